@@ -272,13 +272,13 @@ def live(trial: Trial, page: Page) -> None:
     """Open the run page, and let twenty nodes change again and again."""
     page.goto("about:blank")
     page.goto(f"{trial.url}/behaviors/{ID}", wait_until="commit")
-    page.locator(".graph .react-flow__node").first.wait_for(timeout=_LIMIT_MS)
+    page.locator("[data-graph] .react-flow__node").first.wait_for(timeout=_LIMIT_MS)
     trial.add("run page: open until drawn", page.evaluate("() => performance.now()"), "ms")
     page.wait_for_timeout(1000)
     graph: Any = page.evaluate(f"async () => (await (await fetch('/api/v1/behaviors/{ID}')).json()).graph")
     spent: list[float] = page.evaluate("(paths) => probe.overlay(paths, 40)", _leaf_paths(graph))
     trial.add("run page: 20 changes, script", statistics.median(spent[5:]), "ms", 5)
-    pane = page.locator(".graph").bounding_box()
+    pane = page.locator("[data-graph]").bounding_box()
     assert pane is not None
     corner = [pane["x"] + pane["width"] / 2, pane["y"] + 8]
     follow(trial, page, "run page: panning, all in view", 20, ".graph .react-flow__pane", corner)

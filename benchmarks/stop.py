@@ -43,19 +43,19 @@ _SENSELESS = {("signal", "suspended"), ("signal", "killed")}
 _HOW = {"state": "sleep", "interpreter": "hold", "expression": "expression"}
 # Both as the page's own clock has them: what drives the browser takes longer than the page where all share two cores.
 _LISTEN = """() => {
-  const news = document.querySelector('.stop-news')
+  const news = document.querySelector('[aria-label="State of the stop"]')
   const epochMs = (eventMs) => Date.now() - performance.now() + eventMs
   window.stopTimes = new Promise((resolve) => {
     let pressedMs
     const look = () => /acknowledged|at rest/.test(news.textContent) && resolve([pressedMs, epochMs(performance.now())])
-    document.querySelector('.stop-button').addEventListener(
+    document.querySelector('[aria-label="Stop of the cell"] [aria-keyshortcuts]').addEventListener(
       'click', (click) => { pressedMs = epochMs(click.timeStamp) }, { once: true, capture: true })
     new MutationObserver(look).observe(news, { subtree: true, childList: true, characterData: true })
   })
 }"""
 _PUT_AWAY = """() => new Promise((gone) => {
-  const look = () => document.querySelector('.stop-report') ? setTimeout(look, 5) : gone()
-  document.querySelector('.stop-away')?.click()
+  const look = () => document.querySelector('[aria-label="State of the stop"] > *') ? setTimeout(look, 5) : gone()
+  document.querySelector('[aria-label="Put the words about the stop away"]')?.click()
   look()
 })"""
 

@@ -93,7 +93,7 @@ def in_motion(page: Page) -> None:
     """Start the transfer and wait until both arms move."""
     drawn(page)
     start(page)
-    expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=LIMIT_MS)
+    expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2, timeout=LIMIT_MS)
     page.get_by_role("tab", name="Log").click()
     expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=LIMIT_MS)
 

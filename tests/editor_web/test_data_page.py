@@ -89,7 +89,7 @@ def test_the_progress_of_a_goal_is_on_its_node_and_in_its_card(
         expect(card.get_by_role("progressbar")).to_have_attribute("aria-valuenow", "80")
         shop.on_loop(plant.arrive.set)
         expect(page.get_by_role("progressbar", name="Progress of plant/travel")).to_have_count(0)
-        expect(node.locator(".step")).to_have_attribute("data-status", "done")
+        expect(node.locator("[data-node]")).to_have_attribute("data-status", "done")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

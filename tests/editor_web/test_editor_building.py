@@ -14,7 +14,7 @@ MADE = "behaviors/two_steps.yaml"
 
 def require_run_finishes(page: Page) -> None:
     """The run page is there; start, and see the behavior finish."""
-    expect(page.locator(".step.leaf").first).to_be_visible()
+    expect(page.locator('[data-node="leaf"]').first).to_be_visible()
     page.get_by_role("button", name="Start", exact=True).click()
     expect(page.get_by_role("status", name="State of the run")).to_have_text("Succeeded")
 

@@ -42,7 +42,7 @@ def test_a_tab_that_fails_leaves_the_others(browser: Browser, shop: Workshop) ->
         page.get_by_role("tab", name="Problems").click()
         expect(failed).to_contain_text("Problems cannot be shown")
         expect(failed).to_contain_text(re.compile("Objects are not valid|React error #31"))
-        require_accessible(page, "a view that failed", part=".failed-view")
+        require_accessible(page, "a view that failed", part="[aria-label^='Failure of']")
         failed.get_by_role("button", name="Copy details").click()
         expect(failed.get_by_role("button", name="Copied")).to_be_visible()
         assert "Problems at /behaviors" in page.evaluate("navigator.clipboard.readText()")

@@ -207,7 +207,7 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph of the run."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step").first
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]").first
 
 
 def run(page: Page) -> None:

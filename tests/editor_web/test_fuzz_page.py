@@ -83,7 +83,7 @@ def test_scripts_in_names_texts_and_reasons_stay_text(browser: Browser, harmful:
         harmful.on_loop(lambda: control.lock("root/say", SCRIPT + QUOTED))
         harmful.on_loop(control.resume)
         expect(page.get_by_role("log")).to_contain_text(SCRIPT + QUOTED)
-        page.locator(".react-flow__node[data-id='root/say'] .step").click()
+        page.locator(".react-flow__node[data-id='root/say'] [data-node]").click()
         expect(page.get_by_role("region", name="Node root/say")).to_contain_text(f"Locked: {SCRIPT}")
         require_unharmed(page)
         harmful.call(harmful.session.stop(run, reason=SCRIPT))

@@ -26,7 +26,7 @@ def at_shift(browser: Browser, shop: Workshop, *, quiet: bool = True) -> Generat
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]")
 
 
 def dot(page: Page, path: str) -> Locator:
@@ -104,7 +104,7 @@ def test_a_locked_node_is_held_with_its_reason_until_it_is_unlocked(browser: Bro
         chosen.get_by_label("Reason of the lock").fill("the tray is being changed")
         chosen.get_by_role("button", name="Lock", exact=True).click()
         expect(chosen).to_contain_text("Locked: the tray is being changed")
-        expect(node(page, "root/set").locator(".lock-mark")).to_be_visible()
+        expect(node(page, "root/set").locator('[data-mark="lock"]')).to_be_visible()
         page.get_by_role("button", name="Resume", exact=True).click()
         expect(waits(page)).to_have_text("root/set with done: locked")
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Waiting at lock")

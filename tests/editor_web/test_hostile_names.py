@@ -49,7 +49,7 @@ def test_a_run_of_inherited_names_is_started_and_watched(browser: Browser, shop:
         page.locator("[name='constructor']").fill("given")
         page.locator("[name='__proto__']").fill("7")
         page.get_by_role("button", name="Start", exact=True).click()
-        expect(page.locator(".react-flow__node[data-id='root/constructor'] .step")).to_have_attribute(
+        expect(page.locator(".react-flow__node[data-id='root/constructor'] [data-node]")).to_have_attribute(
             "data-status", "active"
         )
         page.get_by_role("tab", name="Data").click()

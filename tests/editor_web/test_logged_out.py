@@ -44,7 +44,7 @@ def test_a_logged_out_page_takes_a_token_and_goes_on(browser: Browser, site: Sit
         overlay.get_by_label("Token").fill(site.running.new_login_url().partition("t=")[2])
         overlay.get_by_role("button", name="Log in").click()
         expect(overlay).to_have_count(0)
-        expect(page.locator(".connection")).to_have_text("Live")
+        expect(page.locator("[data-connection]")).to_have_text("Live")
         expect(page.get_by_label("Speed")).to_have_value("0.7")
 
 
@@ -60,9 +60,9 @@ def test_a_log_in_on_another_tab_is_enough(browser: Browser, site: Site) -> None
         expect(page.get_by_label("Speed")).to_have_value("0.7")
         other = page.context.new_page()
         other.goto(site.running.new_login_url())
-        expect(other.locator(".connection")).to_have_text("Live")
+        expect(other.locator("[data-connection]")).to_have_text("Live")
         expect(bar).to_have_count(0)
-        expect(page.locator(".connection")).to_have_text("Live")
+        expect(page.locator("[data-connection]")).to_have_text("Live")
         expect(page.get_by_label("Speed")).to_have_value("0.7")
 
 

@@ -41,7 +41,7 @@ def test_a_lost_cell_says_why_and_is_connected_again(browser: Browser, shop: Wor
         shop.on_loop(lambda: shop.arm.become("fault", error=REASON))
         banner = page.get_by_role("alert").filter(has_text="The cell is not connected")
         expect(banner).to_contain_text(REASON)
-        require_accessible(page, "a lost cell", part=".lost-cell")
+        require_accessible(page, "a lost cell", part="[role=alert]")
         banner.get_by_role("button", name="Connect again").click()
         expect(banner).to_contain_text("the world cannot be started – see the log of the server")
         assert cell.connects == 1

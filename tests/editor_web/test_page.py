@@ -47,7 +47,7 @@ def address(behavior: str) -> str:
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]")
 
 
 def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, site: Site) -> None:
@@ -59,17 +59,17 @@ def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, si
         page.get_by_role("button", name="Start").click()
         for arm in ("left", "right"):
             expect(node(page, f"root/approach/{arm}")).to_have_attribute("data-status", "active")
-        expect(page.locator(".leaf.is-active")).to_have_count(2)
+        expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2)
         expect(page.get_by_role("button", name="Start")).to_be_disabled()
         site.call(site.backend.end_step())
         for arm in ("left", "right"):
             expect(node(page, f"root/pick/{arm}/descend")).to_have_attribute("data-status", "active")
         expect(node(page, "root/approach/left")).to_contain_text("reached")
-        expect(page.locator(".course.is-taken")).to_have_count(1)
+        expect(page.locator("[data-course][data-taken]")).to_have_count(1)
         page.get_by_role("button", name="Stop this run").click()
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(page.get_by_role("log")).to_contain_text("stop requested: stopped in the dashboard")
-        expect(page.locator(".leaf.is-active")).to_have_count(0)
+        expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(0)
     started = site.backend.events("run-001")[0]
     assert getattr(started, "parameters", None) == {
         "speed": 0.3,
@@ -88,7 +88,7 @@ def test_a_reload_in_mid_run_shows_what_is_running(visit: Visit, site: Site) -> 
         for is_reloaded in (False, True):
             if is_reloaded:
                 page.reload()
-            expect(page.locator(".leaf.is-active")).to_have_count(2)
+            expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2)
             expect(page.get_by_role("status", name="State of the run")).to_have_text("Running")
             expect(page.get_by_role("log")).to_contain_text("run started")
 
@@ -98,15 +98,15 @@ def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
     site.backend.step_s = LASTING_S
     with visit(address(TRANSFER.id), quiet=False) as page:
         page.get_by_label("Speed").fill("0.7")
-        expect(page.locator(".connection")).to_have_text("Live")
+        expect(page.locator("[data-connection]")).to_have_text("Live")
         site.down()
         expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
         site.up()
-        expect(page.locator(".connection")).to_have_text("Live")
+        expect(page.locator("[data-connection]")).to_have_text("Live")
         expect(page.get_by_role("alert")).to_have_count(0)
         expect(page.get_by_label("Speed")).to_have_value("0.7")
         page.get_by_role("button", name="Start", exact=True).click()
-        expect(page.locator(".leaf.is-active")).to_have_count(2)
+        expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2)
 
 
 def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> None:
@@ -116,10 +116,12 @@ def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> 
         page.get_by_label("Part").fill("hca_1")
         page.get_by_role("button", name="Start").click()
         expect(node(page, "root/grasp")).to_have_attribute("data-status", "failed")
-        expect(node(page, "root/grasp").locator(".exit.is-taken")).to_have_text("failed")
+        expect(node(page, "root/grasp").locator("[data-exit][data-taken]")).to_have_text("failed")
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Failed")
         page.get_by_role("log").get_by_role("button", name="3 causes").last.click()
-        expect(page.locator(".causes li").first).to_contain_text("no contact on either pad")
+        expect(page.get_by_role("list", name="Causes").get_by_role("listitem").first).to_contain_text(
+            "no contact on either pad"
+        )
 
 
 def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: Site) -> None:
@@ -134,7 +136,7 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
             page.keyboard.press(key)
         expect(tree.get_by_role("treeitem", selected=True)).to_have_accessible_name("left motion.MoveJoints active")
         expect(page.get_by_label("Path of the selection")).to_have_text("rootapproachleft")
-        expect(page.locator(".step.is-selected")).to_contain_text("motion.MoveJoints")
+        expect(page.locator("[data-node][data-selected]")).to_contain_text("motion.MoveJoints")
         page.keyboard.press("ArrowLeft")
         page.keyboard.press("ArrowLeft")
         expect(tree.get_by_role("treeitem", name="approach")).to_have_attribute("aria-expanded", "false")
@@ -150,13 +152,13 @@ def test_every_page_is_accessible(visit: Visit, site: Site, scheme: Scheme) -> N
     with visit("/", scheme=scheme) as page:
         require_accessible(page, "home")
         page.get_by_role("link", name="two_arm_transfer").first.click()
-        expect(page.locator(".leaf.is-active")).to_have_count(2)
+        expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2)
         require_accessible(page, "running")
         page.get_by_role("tab", name="Outline").click()
         page.get_by_role("treeitem").nth(2).click()
         require_accessible(page, "outline")
         page.get_by_role("link", name="palletise").click()
-        expect(page.locator(".finding")).to_be_visible()
+        expect(page.locator("[data-finding]")).to_be_visible()
         expect(page.get_by_role("button", name="Start")).to_be_disabled()
         require_accessible(page, "broken")
         page.set_viewport_size({"width": 390, "height": 844})
@@ -179,7 +181,7 @@ def test_it_fits_every_screen(visit: Visit, width: int, height: int) -> None:
         require_fit(page, width, height)
         if width < 992:
             page.get_by_role("tab", name="Graph").click()
-        expect(page.locator(".leaf").first).to_be_visible()
+        expect(page.locator('[data-node="leaf"]').first).to_be_visible()
 
 
 def test_the_cell_is_drawn_in_three_dimensions(visit: Visit, tmp_path: Path, loopback: str, browser: Browser) -> None:

@@ -28,7 +28,7 @@ from tests.engine.cli.process import entered, started, until
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]")
 
 
 def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(

@@ -35,7 +35,7 @@ def at_shift(
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]")
 
 
 def command(page: Page, name: str) -> Locator:
@@ -65,7 +65,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
         expect(waits).to_have_text("root before its entry: paused")
         command(page, "Step into").click()
         expect(waits).to_have_text("root/first before its entry: paused")
-        expect(node(page, "root/first").locator(".waiting-ring")).to_be_visible()
+        expect(node(page, "root/first").locator('[data-mark="waits"]')).to_be_visible()
         expect(node(page, "root/first")).to_contain_text("paused")
         command(page, "Step over").click()
         expect(waits).to_have_text("root/set before its entry: paused")

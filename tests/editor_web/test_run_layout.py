@@ -66,7 +66,7 @@ def test_layouts_are_chosen_kept_and_in_the_address(browser: Browser, tmp_path: 
         opened_page(browser, shop.running, f"/behaviors/{CONFIRMED_ID}", size=SMALL) as page,
     ):
         view = page.locator("iframe[title='3D view of the cell']")
-        cell, space = page.get_by_role("region", name="Cell", exact=True), page.locator(".work-space")
+        cell, space = page.get_by_role("region", name="Cell", exact=True), page.locator("[data-work-space]")
         expect(view).to_be_visible()
         view.evaluate("(frame) => { frame.isTheSame = true }")
         assert area(cell) > 0.5 * area(space)

@@ -29,7 +29,7 @@ def test_several_runs_go_on_side_by_side(browser: Browser, shop: Workshop) -> No
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused")
         runs.get_by_role("link", name="shift").click()
         expect(page.get_by_role("list", name="Nodes that wait")).to_contain_text("root before its entry: paused")
-        expect(page.locator(".active-run")).to_contain_text("+ 1")
+        expect(page.get_by_role("link", name="+ 1 other")).to_be_visible()
         page.get_by_role("button", name="Stop this run").click()
         expect(page.get_by_role("status", name="State of the run")).to_have_text("Stopped")
         expect(page.get_by_text("Another run is active")).to_be_visible()
@@ -74,7 +74,7 @@ def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Works
         expect(stop).to_have_attribute("title", re.compile("This is no emergency stop"))
         stop.click()
         expect(page.get_by_role("status", name="State of the stop")).to_contain_text("All arms at rest")
-        expect(page.get_by_role("table").locator(".badge", has_text="stopped")).to_have_count(2)
+        expect(page.get_by_role("table").locator("span[data-status]", has_text="stopped")).to_have_count(2)
     for run in runs:
         reasons = [event.reason for event in shop.events(run) if isinstance(event, StopRequested)]
         assert reasons == ["the cell was stopped in the dashboard"]

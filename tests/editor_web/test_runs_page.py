@@ -112,9 +112,9 @@ def test_two_runs_stand_side_by_side(browser: Browser, shop: Workshop) -> None:
         aside.click()
         page.reload()
         left, right = column(page, "left"), column(page, "right")
-        expect(left.locator("[data-id='root/only'] .step")).to_have_attribute("data-status", "active")
-        expect(right.locator("[data-id='root/both'] .step")).to_have_attribute("data-status", "active")
-        expect(right.locator("[data-id='root/first'] .step")).to_have_attribute("data-status", "done")
+        expect(left.locator("[data-id='root/only'] [data-node]")).to_have_attribute("data-status", "active")
+        expect(right.locator("[data-id='root/both'] [data-node]")).to_have_attribute("data-status", "active")
+        expect(right.locator("[data-id='root/first'] [data-node]")).to_have_attribute("data-status", "done")
         expect(right.get_by_role("log")).to_contain_text("run started: shift")
         expect(left.get_by_role("log")).to_contain_text("run started: nap")
         expect(left.get_by_role("log")).not_to_contain_text("shift")
@@ -127,8 +127,8 @@ def test_two_runs_stand_side_by_side(browser: Browser, shop: Workshop) -> None:
         command(left, "Step into").click()
         expect(left.get_by_role("list", name="Nodes that wait")).to_have_text("root/first before its entry: paused")
         command(left, "Stop").click()
-        expect(left.locator(".badge")).to_have_text("Stopped")
-        expect(right.locator(".badge")).to_have_text("Waiting for answer")
+        expect(left.locator("span[data-status]")).to_have_text("Stopped")
+        expect(right.locator("span[data-status]")).to_have_text("Waiting for answer")
         left.get_by_role("link", name="Whole page").click()
         expect(page.locator("h1")).to_have_text("night")
 
@@ -142,8 +142,12 @@ def test_a_run_that_is_over_is_compared_with_one_under_way(browser: Browser, sho
         page.get_by_role("list", name="Runs that ended last").get_by_role("checkbox").press("Space")
         switch(page.get_by_label("Compare nap", exact=True))
         page.get_by_role("button", name="Side by side").click()
-        expect(column(page, "left").locator("[data-id='root/only'] .step")).to_have_attribute("data-status", "stopped")
-        expect(column(page, "right").locator("[data-id='root/only'] .step")).to_have_attribute("data-status", "active")
+        expect(column(page, "left").locator("[data-id='root/only'] [data-node]")).to_have_attribute(
+            "data-status", "stopped"
+        )
+        expect(column(page, "right").locator("[data-id='root/only'] [data-node]")).to_have_attribute(
+            "data-status", "active"
+        )
         page.goto(f"{shop.running.url.rstrip('/')}/beside/{nap}/nothing")
         expect(column(page, "right")).to_contain_text("This server knows no such run")
 
@@ -159,7 +163,7 @@ def test_both_pages_are_accessible(browser: Browser, shop: Workshop, scheme: Sch
         require_accessible(page, "all runs")
     with opened_page(browser, shop.running, f"/beside/{runs['shift']}/{runs['nap']}", scheme=scheme) as page:
         expect(page.get_by_role("button", name="Agree: a")).to_have_count(2)
-        expect(column(page, "right").locator("[data-id='root/only'] .step")).to_be_visible()
+        expect(column(page, "right").locator("[data-id='root/only'] [data-node]")).to_be_visible()
         require_accessible(page, "two runs side by side")
 
 
@@ -167,7 +171,10 @@ def test_on_a_phone_nothing_stands_out_to_the_side(browser: Browser, shop: Works
     """Cards and columns stand below one another."""
     runs = three_runs(shop)
     with opened_page(browser, shop.running, "/runs", size=PHONE) as page:
-        for path, shown in (("/runs", "article"), (f"/beside/{runs['shift']}/{runs['nap']}", ".run-column .step")):
+        for path, shown in (
+            ("/runs", "article"),
+            (f"/beside/{runs['shift']}/{runs['nap']}", ".run-column [data-node]"),
+        ):
             page.goto(shop.running.url.rstrip("/") + path)
             expect(page.locator(shown).first).to_be_visible()
             require_fit(page, PHONE[0])

@@ -44,7 +44,7 @@ def served_page(
 
 def require_live(page: Page) -> None:
     """The page has heard of the engine, and can say since when it has not."""
-    expect(page.locator(".connection")).to_have_text("Live")
+    expect(page.locator("[data-connection]")).to_have_text("Live")
 
 
 def test_stop_goes_through_while_the_engine_is_frozen(browser: Browser, tmp_path: Path, loopback: str) -> None:
@@ -175,7 +175,7 @@ def test_stop_is_above_a_dialog_and_its_key_works_there(browser: Browser, shop: 
         until(page, lambda: len(stops) == 1)
         for _ in range(10):
             page.keyboard.press("Tab")
-            if page.evaluate("document.activeElement.className") == "stop-button":
+            if page.evaluate("document.activeElement.ariaKeyShortcuts") == KEY:
                 break
         page.keyboard.press("Enter")
         until(page, lambda: len(stops) == 2)

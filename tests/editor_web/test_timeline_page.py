@@ -85,7 +85,7 @@ def slider(page: Page) -> Locator:
 
 def node(page: Page, path: str) -> Locator:
     """A node of the graph."""
-    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+    return page.locator(f".react-flow__node[data-id='{path}'] [data-node]")
 
 
 def point_at(page: Page, events: list[Event], time_s: float) -> None:

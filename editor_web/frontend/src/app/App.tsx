@@ -1,8 +1,8 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
-import { AppShell, Burger, Kbd, UnstyledButton } from '@mantine/core'
+import { AppShell, Burger, Kbd, NavLink } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
 import { IconChartDots, IconCube, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
-import { Suspense, useEffect } from 'react'
+import { Suspense, useEffect, type ReactNode } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
 import { openSearch, useSearch, type PageCommand } from '../api/search'
@@ -11,7 +11,7 @@ import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
-import { PageLink } from '../components/PageLink'
+import { SIDE_ITEM, SideLink } from '../components/SideLink'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
@@ -20,6 +20,7 @@ import { RunList } from '../features/runs/RunList'
 import { SearchBox } from '../features/search/SearchBox'
 import { useGuide } from '../features/stop/guide'
 import { StoppedBanner } from '../features/stop/StoppedBanner'
+import classes from './App.module.css'
 import { Header } from './Header'
 import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
@@ -56,9 +57,6 @@ export function App() {
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
   const isCell = route.page === 'cell'
-  const isOfRuns = route.page === 'runs' || route.page === 'beside'
-  const isOfPast = route.page === 'past' || route.page === 'compare' || route.page === 'trend'
-  const isOfSweeps = route.page === 'sweeps' || route.page === 'sweep'
   const isSearching = useSearch((s) => s.isOpen)
   const isTouring = useTour((s) => s.isOn)
   const isStopped = useLive((s) => s.stop !== null)
@@ -80,6 +78,7 @@ export function App() {
 
   return (
     <AppShell
+      style={{ '--app-shell-border-color': 'var(--line)' }}
       header={{ height: 52 }}
       navbar={{
         width: { base: 220, xl: 290 },
@@ -88,15 +87,16 @@ export function App() {
       }}
       aside={{ width: { base: 380, xl: 460 }, breakpoint: 'md', collapsed: { mobile: !isGuided, desktop: !isGuided } }}
     >
-      <a className="skip-link" href="#main">
+      <a className={classes.skip} href="#main">
         Skip to the content
       </a>
-      <AppShell.Header className="app-header">
+      <AppShell.Header display="flex" bg="var(--surface)" style={HEADER}>
         <Burger
           opened={menuOpen}
           onClick={menu.toggle}
           hiddenFrom="md"
           size="sm"
+          data-tour="menu"
           aria-label={menuOpen ? 'Close the menu' : 'Open the menu'}
         />
         <ViewBoundary name="Header">
@@ -115,7 +115,7 @@ export function App() {
           />
         </ViewBoundary>
       </AppShell.Header>
-      <AppShell.Navbar className="app-navbar">
+      <AppShell.Navbar py={14} px="xs" bg="var(--surface)" style={{ gap: 18, overflowY: 'auto' }}>
         <ViewBoundary name="Behaviors">
           <BehaviorList
             behaviors={behaviors.value ?? []}
@@ -129,31 +129,24 @@ export function App() {
           <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
         </ViewBoundary>
         <div>
-          <UnstyledButton className="side-item run-item" onClick={openSearch}>
-            <IconSearch size={15} aria-hidden />
-            <span className="side-item-name">
-              Search <Kbd size="xs">Ctrl K</Kbd>
-            </span>
-          </UnstyledButton>
-          <PageLink href={CELL_HREF} className={sideItem(isCell)} isCurrent={isCell} onOpen={() => open(CELL_HREF)}>
-            <IconCube size={15} aria-hidden />
-            <span className="side-item-name">Cell</span>
-          </PageLink>
-          <PageLink href={RUNS_HREF} className={sideItem(isOfRuns)} isCurrent={isOfRuns} onOpen={() => open(RUNS_HREF)}>
-            <IconLayoutGrid size={15} aria-hidden />
-            <span className="side-item-name">All active runs</span>
-          </PageLink>
-          <PageLink href={PAST_HREF} className={sideItem(isOfPast)} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
-            <IconHistory size={15} aria-hidden />
-            <span className="side-item-name">Past runs and recordings</span>
-          </PageLink>
-          <PageLink href={SWEEPS_HREF} className={sideItem(isOfSweeps)} isCurrent={isOfSweeps} onOpen={() => open(SWEEPS_HREF)}>
-            <IconChartDots size={15} aria-hidden />
-            <span className="side-item-name">Sweeps</span>
-          </PageLink>
+          <NavLink
+            {...SIDE_ITEM}
+            component="button"
+            type="button"
+            leftSection={<IconSearch size={15} aria-hidden />}
+            label={
+              <>
+                Search <Kbd size="xs">Ctrl K</Kbd>
+              </>
+            }
+            onClick={openSearch}
+          />
+          {SIDE_PAGES.map(({ href, label, icon, pages }) => (
+            <SideLink key={href} href={href} label={label} icon={icon} isCurrent={pages.includes(route.page)} onOpen={() => open(href)} />
+          ))}
         </div>
       </AppShell.Navbar>
-      <AppShell.Main id="main" className="app-main">
+      <AppShell.Main id="main" display="flex" h="100dvh" mih={0} style={{ flexDirection: 'column' }}>
         <ConnectionLost />
         <StoppedBanner />
         <LogIn />
@@ -186,6 +179,16 @@ export function App() {
     </AppShell>
   )
 }
+
+/** STOP lies over the end of it. */
+const HEADER = { gap: 12, alignItems: 'center', paddingInline: '14px var(--stop-room, 14px)' }
+
+const SIDE_PAGES: readonly { href: string; label: string; icon: ReactNode; pages: readonly Route['page'][] }[] = [
+  { href: CELL_HREF, label: 'Cell', icon: <IconCube size={15} aria-hidden />, pages: ['cell'] },
+  { href: RUNS_HREF, label: 'All active runs', icon: <IconLayoutGrid size={15} aria-hidden />, pages: ['runs', 'beside'] },
+  { href: PAST_HREF, label: 'Past runs and recordings', icon: <IconHistory size={15} aria-hidden />, pages: ['past', 'compare', 'trend'] },
+  { href: SWEEPS_HREF, label: 'Sweeps', icon: <IconChartDots size={15} aria-hidden />, pages: ['sweeps', 'sweep'] },
+]
 
 const PAGES: readonly PageCommand[] = [
   ['Home', '/'],
@@ -224,10 +227,6 @@ function useSearchKey(): void {
     addEventListener('keydown', onKeyDown)
     return () => removeEventListener('keydown', onKeyDown)
   }, [])
-}
-
-function sideItem(isCurrent: boolean): string {
-  return `side-item run-item${isCurrent ? ' is-current' : ''}`
 }
 
 /** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */

@@ -1,5 +1,5 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
-import { Button } from '@mantine/core'
+import { Box, Button, Flex } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
@@ -12,6 +12,7 @@ import { runSubject } from '../api/timeline'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
+import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { proposedRequest } from '../document/plannedPaths'
@@ -38,6 +39,7 @@ import { Selection } from '../features/graph/Selection'
 import { Breadcrumb } from './Breadcrumb'
 import { dockBodies } from './dock'
 import { LayoutChoice } from './LayoutChoice'
+import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
@@ -47,7 +49,7 @@ import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
-import { NarrowGraph, SideTabs, Wide, type Arrangement, type Tab } from './WorkSpace'
+import { NarrowGraph, SideTabs, TabBody, Wide, type Arrangement, type Tab } from './WorkSpace'
 
 export interface BehaviorPageProps {
   readonly id: string
@@ -73,7 +75,7 @@ export function BehaviorPage(props: BehaviorPageProps) {
     void loadSavedBreakpoints(id)
   }, [id, generation])
   if (fetched.problem) return <Empty title="This behavior cannot be shown">{fetched.problem}</Empty>
-  if (!fetched.value) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!fetched.value) return <div role="status" aria-label="Loading" />
   return <Loaded {...props} behavior={fetched.value} />
 }
 
@@ -170,10 +172,10 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const cell = (
     <Panel
       title="Cell"
-      className="cell-panel"
+      hasIcons
       tools={
         <>
-          <span className="spacer" />
+          <Box flex={1} />
           {hasView && <ShowMenu />}
           {mayOperate && <ResetParts isBusy={active.length > 0} />}
         </>
@@ -189,7 +191,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     </Panel>
   )
   const parameters = (
-    <div className="tab-body">
+    <TabBody>
       <ParameterForm
         behavior={behavior}
         obstacle={obstacle}
@@ -201,10 +203,10 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         onStarted={onStarted}
         run={run?.id}
       />
-    </div>
+    </TabBody>
   )
   const nodeTab = (
-    <div className="tab-body is-flush">
+    <TabBody isFlush>
       {node ? (
         <>
           {card}
@@ -213,7 +215,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       ) : (
         <Empty title="No node is selected">Click a node in the graph, or select one in the outline.</Empty>
       )}
-    </div>
+    </TabBody>
   )
   const page = {
     behavior: behavior.id,
@@ -228,30 +230,25 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   }
   const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show, page })
   const outline = (
-    <div className="tab-body is-flush">
+    <TabBody isFlush>
       {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={setSelected} />}
       {node && <Selection node={node} />}
-    </div>
+    </TabBody>
   )
   const held = (
-    <div className="tab-body">
+    <TabBody>
       <Holds commands={commands} onShow={show} />
-    </div>
+    </TabBody>
   )
   const problems = (
-    <div className="tab-body">
+    <TabBody>
       <FindingList document={behavior.id} findings={behavior.findings} onSelect={show} />
-    </div>
+    </TabBody>
   )
 
   return (
-    <div className="behavior-page">
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>{behavior.name}</h1>
-          {behavior.description && <p className="quiet">{behavior.description}</p>}
-        </div>
-        <span className="spacer" />
+    <Flex direction="column" flex={1} mih={0}>
+      <PageHead title={behavior.name} words={behavior.description}>
         {hasView && !isNarrow && <LayoutChoice layout={arrangement === 'approval' ? undefined : layout} onLayout={setLayout} />}
         <Button variant="default" size="sm" leftSection={<IconPencil size={15} aria-hidden />} onClick={() => onEdit(selected ?? '')}>
           Edit
@@ -259,6 +256,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         <Button
           type="submit"
           form={FORM_ID}
+          data-tour="start"
           size="sm"
           leftSection={<IconPlayerPlayFilled size={14} aria-hidden />}
           disabled={obstacle !== undefined}
@@ -266,7 +264,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         >
           Start
         </Button>
-      </header>
+      </PageHead>
       <ViewBoundary name="Interrupted run">
         <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
       </ViewBoundary>
@@ -279,13 +277,12 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <ViewBoundary name="Timeline">
         <PastLine run={run} hasCellView={hasView} />
       </ViewBoundary>
-      <div className="refusal-place">
+      <div className={classes.refusal}>
         <RefusalLine />
       </div>
       {isNarrow ? (
         <OpenedTabs
           label="Views"
-          className="narrow-tabs"
           bodies={{
             Start: parameters,
             Graph: <NarrowGraph graph={graph} card={card} />,
@@ -300,8 +297,8 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         <Wide
           arrangement={arrangement}
           graph={graph}
-          course={<OpenedTabs label="Course of the run" bodies={dock.course} className="dock" asked={askedTab} />}
-          records={<OpenedTabs label="Records of the run" bodies={dock.records} className="dock" />}
+          course={<OpenedTabs label="Course of the run" bodies={dock.course} isDock asked={askedTab} />}
+          records={<OpenedTabs label="Records of the run" bodies={dock.records} isDock />}
           cell={cell}
           tabs={
             <SideTabs
@@ -320,7 +317,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <ChangeReport commands={commands} />
       <StartHereDialog behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
       <ShortcutSheet isOpen={isSheetOpen} onClose={() => setSheetOpen(false)} areOn={keys.areOn} onSwitch={keys.setOn} />
-    </div>
+    </Flex>
   )
 }
 
@@ -352,7 +349,7 @@ function useArrangement(hasView: boolean) {
 
 /** Put the keyboard on the first button of an area; false where there is none. */
 function focusFirst(id: string): boolean {
-  const button = document.querySelector<HTMLElement>(`#${id} .command`)
+  const button = document.querySelector<HTMLElement>(`#${id} .mantine-Button-root`)
   button?.focus()
   return button !== null
 }

@@ -2,11 +2,14 @@
 import { ActionIcon, Tabs, Tooltip } from '@mantine/core'
 import { IconArrowsExchange } from '@tabler/icons-react'
 import { Suspense, useEffect, useState } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { Group, Panel as Pane } from 'react-resizable-panels'
 import { comparisonApi } from '../api/comparison'
 import type { RunComparison } from '../api/types'
 import { Empty } from '../components/Empty'
+import { PageHead } from '../components/PageHead'
 import { PageLink } from '../components/PageLink'
+import { Splitter } from '../components/Splitter'
+import { TabCount } from '../components/TabCount'
 import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { dataOf, indexAt, placeOf, type Side } from '../document/comparison'
@@ -17,6 +20,7 @@ import { NodeDurations } from '../features/comparison/NodeDurations'
 import { Settings } from '../features/comparison/Settings'
 import { VisitDetails } from '../features/comparison/VisitDetails'
 import { VisitTable } from '../features/comparison/VisitTable'
+import classes from './pages.module.css'
 import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
 import { useFetched } from './useFetched'
 
@@ -49,7 +53,7 @@ export function ComparePage(props: ComparePageProps) {
       </Empty>
     )
   }
-  if (!value || left === LAST_GOOD) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!value || left === LAST_GOOD) return <div role="status" aria-label="Loading" />
   return <Compared key={`${left} ${right}`} {...props} found={value} />
 }
 
@@ -77,9 +81,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
         <Tabs.Tab value="durations">Durations</Tabs.Tab>
         <Tabs.Tab value="settings">
           Settings{' '}
-          {found.settings.length + found.documents.length > 0 && (
-            <span className="tab-count">{found.settings.length + found.documents.length}</span>
-          )}
+          {found.settings.length + found.documents.length > 0 && <TabCount count={found.settings.length + found.documents.length} />}
         </Tabs.Tab>
         <Tabs.Tab value="curves">Curves</Tabs.Tab>
       </Tabs.List>
@@ -105,27 +107,23 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
   )
   return (
     <div className={styles.page}>
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>Compare runs</h1>
-        </div>
-        <span className="spacer" />
+      <PageHead title="Compare runs">
         <Tooltip label="Swap left and right">
           <ActionIcon variant="subtle" color="gray" aria-label="Swap left and right" onClick={() => onOpen(swapped)}>
             <IconArrowsExchange size={18} />
           </ActionIcon>
         </Tooltip>
-      </header>
+      </PageHead>
       <div className={styles.runs}>
         <ComparedRun side="left" run={found.left} href={hrefAt('left')} onOpen={() => onOpen(hrefAt('left'))} />
         <ComparedRun side="right" run={found.right} href={hrefAt('right')} onOpen={() => onOpen(hrefAt('right'))} />
       </div>
       <FirstDivergence divergence={found.divergence} onShow={() => setSelected(found.divergence?.index)} />
-      <Group orientation={isNarrow ? 'vertical' : 'horizontal'} className="work-space">
+      <Group orientation={isNarrow ? 'vertical' : 'horizontal'} className={classes.work}>
         <Pane id="visits" defaultSize="58%" minSize="25%">
           <ViewBoundary name="Visits">{table}</ViewBoundary>
         </Pane>
-        <Separator className={`splitter ${isNarrow ? 'is-flat' : ''}`} aria-label="Size of the table of visits" />
+        <Splitter isFlat={isNarrow} label="Size of the table of visits" />
         <Pane id="details" defaultSize="42%" minSize="25%">
           <ViewBoundary name="Details">{details}</ViewBoundary>
         </Pane>

@@ -1,7 +1,7 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
-import { ActionIcon, Button, Tooltip, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
+import { ActionIcon, Box, Button, Group, Text, Tooltip, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
 import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useState, type MouseEvent } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import type { RunView } from '../api/types'
@@ -9,6 +9,7 @@ import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { runStateOf, runWords } from '../document/runState'
 import { nameOf, RunTime } from '../features/runs/RunList'
+import classes from './Header.module.css'
 import { CELL_HREF, RUNS_HREF, TEACH_HREF } from './route'
 
 export interface HeaderProps {
@@ -33,47 +34,79 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
   const others = active.length - 1
   return (
     <>
-      <a
+      <Text
+        component="a"
         href="/"
-        className="brand"
-        onClick={(event) => {
+        aria-label="flexcell"
+        fz="1.02rem"
+        fw={650}
+        td="none"
+        c="var(--text)"
+        display="flex"
+        style={{ gap: 9, alignItems: 'center' }}
+        onClick={(event: MouseEvent) => {
           event.preventDefault()
           onHome()
         }}
       >
         <img src="/favicon.svg" alt="" width={24} height={24} />
-        <span className="brand-name">flexcell</span>
-      </a>
+        <Text span inherit visibleFrom="xs">
+          flexcell
+        </Text>
+      </Text>
       {cellName && (
-        <PageLink href={CELL_HREF} className="cell-name" title="What the cell consists of" isCurrent={isCell} onOpen={onCell}>
-          {cellName}
-        </PageLink>
+        <Box visibleFrom="md" pl="sm" style={{ borderInlineStart: '1px solid var(--line)' }}>
+          <PageLink href={CELL_HREF} className={classes.link} title="What the cell consists of" isCurrent={isCell} onOpen={onCell}>
+            {cellName}
+          </PageLink>
+        </Box>
       )}
-      <PageLink href={TEACH_HREF} className="header-link" isCurrent={isTeaching} onOpen={onTeach}>
+      <PageLink href={TEACH_HREF} className={classes.link} isCurrent={isTeaching} label="Teach" onOpen={onTeach}>
         <IconHandFinger size={16} aria-hidden />
-        <span className="header-link-words">Teach</span>
+        <Text span inherit visibleFrom="xs">
+          Teach
+        </Text>
       </PageLink>
       <ConnectionLabel />
-      <span className="spacer" />
+      <Box flex={1} />
       {!named && active.length > 1 && (
-        <PageLink href={RUNS_HREF} className="active-run" onOpen={onRuns}>
+        <PageLink href={RUNS_HREF} className={classes.run} onOpen={onRuns}>
           <StatusIcon status="active" size={14} />
           <span>
-            {active.length} runs<span className="active-run-words"> active</span>
+            {active.length} runs
+            <Text span inherit visibleFrom="xs">
+              {' '}
+              active
+            </Text>
           </span>
         </PageLink>
       )}
       {named && (
-        <div className={`active-run is-${runStateOf(named).look}`}>
-          <button type="button" className="active-run-name" title={runWords(named)} onClick={() => onRun(named.id)}>
+        <div className={classes.run} data-status={runStateOf(named).look}>
+          <UnstyledButton
+            display="flex"
+            miw={0}
+            c="inherit"
+            fz="inherit"
+            fw="inherit"
+            style={{ gap: 6, alignItems: 'center' }}
+            title={runWords(named)}
+            onClick={() => onRun(named.id)}
+          >
             <StatusIcon status={runStateOf(named).look} size={14} />
-            <span>{nameOf(named.behavior)}</span>
-          </button>
-          <RunTime run={named} />
+            <Text span inherit truncate>
+              {nameOf(named.behavior)}
+            </Text>
+          </UnstyledButton>
+          <Text span inherit visibleFrom="xs">
+            <RunTime run={named} />
+          </Text>
           {others > 0 && (
-            <PageLink href={RUNS_HREF} className="active-run-others" title="All active runs" onOpen={onRuns}>
+            <PageLink href={RUNS_HREF} className={classes.others} title="All active runs" onOpen={onRuns}>
               + {others}
-              <span className="active-run-words"> other{others > 1 && 's'}</span>
+              <Text span inherit visibleFrom="xs">
+                other{others > 1 && 's'}
+              </Text>
             </PageLink>
           )}
         </div>
@@ -106,7 +139,9 @@ function StopButton({ run }: { run: RunView }) {
         }}
       >
         {isStopping ? 'Stopping' : 'Stop'}
-        <span className="active-run-words">&nbsp;{isStopping ? '' : 'this run'}</span>
+        <Text span inherit visibleFrom="xs">
+          &nbsp;{isStopping ? '' : 'this run'}
+        </Text>
       </Button>
     </Tooltip>
   )
@@ -114,13 +149,25 @@ function StopButton({ run }: { run: RunView }) {
 
 const WORDS = { connecting: 'Connecting', live: 'Live', lost: 'Reconnecting', denied: 'Logged out' }
 
+const DOTS = { connecting: 'var(--line-strong)', live: 'var(--done)', lost: 'var(--failed)', denied: 'var(--failed)' }
+
 function ConnectionLabel() {
   const connection = useLive((s) => s.connection)
+  const isOff = connection === 'lost' || connection === 'denied'
   return (
-    <span className={`connection is-${connection}`} role="status">
-      <span className="connection-dot" aria-hidden />
+    <Group
+      component="span"
+      gap="3xs"
+      fz="0.8rem"
+      c={isOff ? 'var(--failed)' : 'var(--quiet)'}
+      fw={isOff ? 600 : 400}
+      {...(connection === 'live' ? { visibleFrom: 'md' } : {})}
+      data-connection={connection}
+      role="status"
+    >
+      <Box w={8} h={8} bdrs={isOff ? 1 : 'xl'} bg={DOTS[connection]} style={{ forcedColorAdjust: 'none' }} aria-hidden />
       {WORDS[connection]}
-    </span>
+    </Group>
   )
 }
 

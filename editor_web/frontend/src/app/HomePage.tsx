@@ -1,8 +1,9 @@
 /** The page of the cell: the 3D view, and the runs as a table. */
-import { Table } from '@mantine/core'
+import { Anchor, Box, Table, Text, VisuallyHidden } from '@mantine/core'
 import { useLive } from '../api/live'
 import { useTour } from '../api/tour'
 import { Empty } from '../components/Empty'
+import { PageLink } from '../components/PageLink'
 import { Panel } from '../components/Panel'
 import { RunBadge } from '../components/StatusBadge'
 import { TourButton } from '../components/TourButton'
@@ -15,6 +16,7 @@ import { RobotStrip } from '../features/robots/RobotStrip'
 import { nameOf, RunTime } from '../features/runs/RunList'
 import { TourInvitation } from '../features/tour/TourInvitation'
 import { InterruptedHere } from './InterruptedHere'
+import classes from './pages.module.css'
 import { runHref } from './route'
 
 export interface HomePageProps {
@@ -26,17 +28,12 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
   const runs = useLive((s) => s.runs)
   const role = useLive((s) => s.role)
   return (
-    <div className="home">
-      <h1 className="visually-hidden">The cell</h1>
-      <Panel
-        title="Cell"
-        className="home-cell"
-        tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />}
-        foot={<CellFoot />}
-      >
+    <div className={classes.home}>
+      <VisuallyHidden component="h1">The cell</VisuallyHidden>
+      <Panel title="Cell" hasIcons tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
         <CellFrame />
       </Panel>
-      <Panel title="Latest runs" className="home-runs" tools={<RunTools mayOperate={role === 'operator'} />}>
+      <Panel title="Latest runs" tools={<RunTools mayOperate={role === 'operator'} />}>
         {role === 'operator' && <TourInvitation />}
         <InterruptedHere onResumed={onOpenRun} />
         {runs.length === 0 ? (
@@ -56,17 +53,14 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
                 {runs.slice(0, 20).map((run) => (
                   <Table.Tr key={run.id}>
                     <Table.Td>
-                      <a
-                        href={runHref(run.id)}
-                        className="link"
-                        onClick={(event) => {
-                          event.preventDefault()
-                          onOpenRun(run.id)
-                        }}
-                      >
+                      <PageLink href={runHref(run.id)} onOpen={() => onOpenRun(run.id)}>
                         {nameOf(run.behavior)}
-                      </a>
-                      {run.cause && <div className="quiet run-cause">{run.cause}</div>}
+                      </PageLink>
+                      {run.cause && (
+                        <Text fz="0.78rem" maw="40ch" c="var(--quiet)">
+                          {run.cause}
+                        </Text>
+                      )}
                     </Table.Td>
                     <Table.Td>
                       <RunBadge run={run} />
@@ -89,7 +83,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
 function CellTools({ hasView, mayOperate }: { hasView: boolean; mayOperate: boolean }) {
   return (
     <>
-      <span className="spacer" />
+      <Box flex={1} />
       {hasView && <ShowMenu />}
       {hasView && mayOperate && <HandleMenu />}
     </>
@@ -100,10 +94,10 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
   const isSettled = useTour((s) => s.isSettled)
   return (
     <>
-      <span className="spacer" />
-      <a className="link" href="/THIRD-PARTY-NOTICES.txt" target="_blank" rel="noreferrer">
+      <Box flex={1} />
+      <Anchor size="sm" href="/THIRD-PARTY-NOTICES.txt" target="_blank" rel="noreferrer">
         Licences
-      </a>
+      </Anchor>
       {mayOperate && isSettled && <TourButton />}
     </>
   )

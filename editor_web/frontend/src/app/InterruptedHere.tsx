@@ -1,4 +1,5 @@
 /** Runs of the shown behavior whose engine died, offered on top of its page. */
+import { Box, Title } from '@mantine/core'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { Interrupted } from '../features/runs/Interrupted'
@@ -20,9 +21,18 @@ export function InterruptedHere({ behavior, onResumed }: InterruptedHereProps) {
   if (runs.length === 0) return null
   const obstacle = role === 'operator' ? undefined : 'you may look only; log in with the operator token'
   return (
-    <section aria-label="Interrupted runs" className="interrupted-area">
-      <h2>Interrupted runs</h2>
+    <Box
+      component="section"
+      aria-label="Interrupted runs"
+      px={14}
+      pb="sm"
+      bg="var(--stopped-soft)"
+      style={{ borderBottom: '1px solid var(--line)' }}
+    >
+      <Title order={2} fz="xs" py="3xs">
+        Interrupted runs
+      </Title>
       <Interrupted runs={runs} obstacle={isConnected ? obstacle : 'the server does not answer'} onResumed={onResumed} />
-    </section>
+    </Box>
   )
 }

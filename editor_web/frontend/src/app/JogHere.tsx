@@ -7,6 +7,6 @@ export function JogHere({ arm }: { readonly arm: string }) {
   useEffect(connectTeach, [])
   const arms = useTeach((s) => s.arms)
   const info = arms?.find((each) => each.name === arm)
-  if (arms === undefined) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (arms === undefined) return <div role="status" aria-label="Loading" />
   return info ? <JogPanel key={arm} arm={info} /> : <p>The server does not tell how {arm} is jogged.</p>
 }

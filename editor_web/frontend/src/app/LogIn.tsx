@@ -1,9 +1,12 @@
 /** Over a page that is logged out: how to log in again without losing what stands in it. */
+import { Button, Code, Stack, Text, TextInput } from '@mantine/core'
+import { IconLogout } from '@tabler/icons-react'
 import { useEffect, useState, type FormEvent } from 'react'
 import { api, wordsOf } from '../api/client'
 import { logIn } from '../api/logIn'
 import { useSession } from '../api/session'
 import { Dialog } from '../components/Dialog'
+import { Notice } from '../components/Notice'
 
 const LOOK_MS = 2000
 
@@ -20,14 +23,17 @@ export function LogIn() {
   if (!isLoggedOut) return null
   return (
     <>
-      <div className="logged-out" role="alert">
-        <span>
-          <strong>You are logged out.</strong> Nothing can be commanded, apart from STOP.
-        </span>
-        <button type="button" className="command is-strong" onClick={() => setAway(false)}>
-          Log in
-        </button>
-      </div>
+      <Notice
+        role="alert"
+        icon={<IconLogout size={20} aria-hidden />}
+        tools={
+          <Button size="compact-sm" onClick={() => setAway(false)}>
+            Log in
+          </Button>
+        }
+      >
+        <strong>You are logged out.</strong> Nothing can be commanded, apart from STOP.
+      </Notice>
       <Dialog isOpen={!isAway} title="You are logged out" onClose={() => setAway(true)}>
         <LogInForm />
       </Dialog>
@@ -53,29 +59,28 @@ function LogInForm() {
   }
 
   return (
-    <form className="log-in" onSubmit={(event) => void submit(event)}>
-      <p>
-        Open a new log-in link (<code>flexcell login</code> prints one) in any tab of this browser, or paste the token here. This page then
+    <Stack component="form" gap="sm" w="min(26rem, 80vw)" onSubmit={(event) => void submit(event)}>
+      <Text size="sm">
+        Open a new log-in link (<Code>flexcell login</Code> prints one) in any tab of this browser, or paste the token here. This page then
         goes on by itself; drafts are kept.
-      </p>
-      <label>
-        Token
-        <input
-          type="password"
-          autoComplete="current-password"
-          required
-          value={token}
-          onChange={(event) => setToken(event.currentTarget.value)}
-        />
-      </label>
+      </Text>
+      <TextInput
+        type="password"
+        label="Token"
+        autoComplete="current-password"
+        required
+        withAsterisk={false}
+        value={token}
+        onChange={(event) => setToken(event.currentTarget.value)}
+      />
       {problem && (
-        <p className="is-lost" role="alert">
+        <Text size="sm" c="var(--failed)" role="alert">
           {problem}
-        </p>
+        </Text>
       )}
-      <button type="submit" className="command is-strong" disabled={isAsking}>
+      <Button type="submit" disabled={isAsking}>
         {isAsking ? 'Logging in' : 'Log in'}
-      </button>
-    </form>
+      </Button>
+    </Stack>
   )
 }

@@ -1,5 +1,5 @@
 /** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
-import { Button } from '@mantine/core'
+import { Button, Flex, Text } from '@mantine/core'
 import { IconGitCompare, IconTrendingUp } from '@tabler/icons-react'
 import { useEffect, useMemo, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
@@ -7,8 +7,10 @@ import { hasCellView } from '../api/session'
 import type { OpenRunBody, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
+import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { RunBadge } from '../components/StatusBadge'
+import { TextButton } from '../components/TextButton'
 import { duration, wallTime } from '../document/time'
 import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
@@ -24,7 +26,7 @@ import { compareHref, LAST_GOOD, runHref, sweepHref, trendHref } from './route'
 import { useRunLayout } from './runLayout'
 import { useFetched } from './useFetched'
 import { useMomentAddress } from './useMomentAddress'
-import { Wide } from './WorkSpace'
+import { TabBody, Wide } from './WorkSpace'
 
 export interface PastPageProps {
   /** The run, or the path of the recording. */
@@ -44,13 +46,11 @@ export function PastPage(props: PastPageProps) {
       <Empty title={isRecording ? 'This recording cannot be opened' : 'This run cannot be opened'}>
         {fetched.problem}
         <br />
-        <button type="button" className="link" onClick={props.onAll}>
-          All past runs
-        </button>
+        <TextButton onPress={props.onAll}>All past runs</TextButton>
       </Empty>
     )
   }
-  if (!fetched.value) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!fetched.value) return <div role="status" aria-label="Loading" />
   return <Opened {...props} opened={fetched.value} />
 }
 
@@ -89,15 +89,15 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
     </Panel>
   )
   const cell = (
-    <Panel title="Cell" className="cell-panel">
+    <Panel title="Cell" hasIcons>
       <CellFrame />
     </Panel>
   )
   const outline = (
-    <div className="tab-body is-flush">
+    <TabBody isFlush>
       {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={show} />}
       {node && <Selection node={node} />}
-    </div>
+    </TabBody>
   )
   const page = {
     behavior: behavior.id,
@@ -108,21 +108,21 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
   }
   const dock = pastBodies({ behavior, run, node: selected, session, onShow: show, page }, run.failed)
   return (
-    <div className="behavior-page">
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>{behavior.name || run.behavior}</h1>
-          <p className="quiet">
-            {isRecording ? `Recording ${id}` : 'Past run'} of {wallTime(run.started_at_s)}, {duration(run.duration_s)}, read-only
-          </p>
-        </div>
-        <RunBadge run={run} />
-        {run.cause && (
-          <span className="page-cause" title={run.cause}>
-            {run.cause}
-          </span>
-        )}
-        <span className="spacer" />
+    <Flex direction="column" flex={1} mih={0}>
+      <PageHead
+        title={behavior.name || run.behavior}
+        words={`${isRecording ? `Recording ${id}` : 'Past run'} of ${wallTime(run.started_at_s)}, ${duration(run.duration_s)}, read-only`}
+        state={
+          <>
+            <RunBadge run={run} />
+            {run.cause && (
+              <Text truncate fz="0.84rem" miw={0} c="var(--failed)" title={run.cause}>
+                {run.cause}
+              </Text>
+            )}
+          </>
+        }
+      >
         {hasView && !isNarrow && <LayoutChoice layout={layout} onLayout={setLayout} />}
         <Button
           variant="default"
@@ -140,14 +140,14 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
         >
           Last runs
         </Button>
-        <button type="button" className="command" onClick={onAll}>
-          <span className="command-label">All past runs</span>
-        </button>
-      </header>
+        <Button variant="default" size="xs" onClick={onAll}>
+          All past runs
+        </Button>
+      </PageHead>
       {isRecording && <RerunLine recording={id} href={sweepHref} onOpen={(sweep, number) => onOpen(sweepHref(sweep, number))} />}
       <PastLine run={run} hasCellView={hasView} />
       {isNarrow ? (
-        <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock.all, Graph: graph, Cell: cell, Outline: outline }} />
+        <OpenedTabs label="Views" bodies={{ ...dock.all, Graph: graph, Cell: cell, Outline: outline }} />
       ) : (
         <Wide
           arrangement={layout}
@@ -160,10 +160,10 @@ function Opened({ id, isRecording, session, isNarrow, onAll, onOpen, opened }: P
               <OpenedTabs label="Below the graph" bodies={{ ...dock.all, Outline: outline }} />
             )
           }
-          course={<OpenedTabs label="Course of the run" bodies={dock.course} className="dock" />}
-          records={<OpenedTabs label="Records of the run" bodies={dock.records} className="dock" />}
+          course={<OpenedTabs label="Course of the run" bodies={dock.course} isDock />}
+          records={<OpenedTabs label="Records of the run" bodies={dock.records} isDock />}
         />
       )}
-    </div>
+    </Flex>
   )
 }

@@ -1,4 +1,5 @@
 /** All runs of the journal, and beside them the recordings of the project. */
+import { VisuallyHidden } from '@mantine/core'
 import { Panel } from '../components/Panel'
 import { PastRuns } from '../features/past/PastRuns'
 import { Recordings } from '../features/past/Recordings'
@@ -7,7 +8,7 @@ import { compareHref, LAST_GOOD, recordingHref, runHref, trendHref } from './rou
 export function PastRunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   return (
     <div className="past-page">
-      <h1 className="visually-hidden">Past runs</h1>
+      <VisuallyHidden component="h1">Past runs</VisuallyHidden>
       <Panel title="Past runs">
         <PastRuns
           href={runHref}

@@ -79,7 +79,7 @@ export function RoutedPage(props: RoutedPageProps) {
     )
   }
   const behavior = route.page === 'behavior' ? route.id : shown?.behavior
-  if (!behavior) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!behavior) return <div role="status" aria-label="Loading" />
   return (
     <BehaviorPage
       key={behavior}

@@ -8,6 +8,7 @@ import type { LeaseMetrics, RunView } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
+import { PageHead } from '../components/PageHead'
 import { isActive } from '../document/runState'
 import { RefusalLine } from '../features/control/RefusalLine'
 import { Requests } from '../features/control/Requests'
@@ -48,14 +49,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
 
   return (
     <div className="runs-page">
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>Runs</h1>
-          <p className="quiet" role="status">
-            {wordsOf(active.length, asking)}
-          </p>
-        </div>
-        <span className="spacer" />
+      <PageHead title="Runs" words={wordsOf(active.length, asking)} isSaid>
         <CommandButton
           label="Side by side"
           hint="Graph and log of two runs side by side"
@@ -72,7 +66,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
           onObstacle={() => showRefusal('Compare', CHOOSE_ENDED)}
           onPress={() => endedPair && onOpen(compareHref(...endedPair))}
         />
-      </header>
+      </PageHead>
       <RefusalLine />
       <div className="runs-body">
         <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />

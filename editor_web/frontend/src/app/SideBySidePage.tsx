@@ -1,13 +1,15 @@
 /** Two runs beside one another, each with its commands, graph and log. */
+import { Box, VisuallyHidden } from '@mantine/core'
 import { IconLayoutColumns } from '@tabler/icons-react'
 import { useEffect, useState, type ReactNode } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { Group, Panel as Pane } from 'react-resizable-panels'
 import { useLive } from '../api/live'
 import { clearRefusal } from '../api/refusal'
 import type { RunView } from '../api/types'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
 import { PageLink } from '../components/PageLink'
+import { Splitter } from '../components/Splitter'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
 import { nodeAt } from '../document/tree'
@@ -22,6 +24,7 @@ import { EventLog } from '../features/log/EventLog'
 import { nameOf } from '../features/runs/RunList'
 import '../features/runs/runs.css'
 import { Breadcrumb } from './Breadcrumb'
+import classes from './pages.module.css'
 import { sideBySideHref, runHref } from './route'
 import { useBehaviorOf } from './useBehaviorOf'
 
@@ -45,7 +48,7 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
   )
   return (
     <div className="beside-page">
-      <h1 className="visually-hidden">Two runs side by side</h1>
+      <VisuallyHidden component="h1">Two runs side by side</VisuallyHidden>
       <RefusalLine />
       {isNarrow ? (
         <div className="beside-stack">
@@ -53,11 +56,11 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
           {column(right, 'right', left)}
         </div>
       ) : (
-        <Group orientation="horizontal" className="work-space">
+        <Group orientation="horizontal" className={classes.work}>
           <Pane id="left-run" defaultSize="50%" minSize="25%">
             {column(left, 'left', right)}
           </Pane>
-          <Separator className="splitter" aria-label="Width of the left run" />
+          <Splitter label="Width of the left run" />
           <Pane id="right-run" defaultSize="50%" minSize="25%">
             {column(right, 'right', left)}
           </Pane>
@@ -155,7 +158,7 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
     <section className="run-column" aria-label={`Run on the ${side}`}>
       <header className="run-column-head">
         {choice}
-        <span className="spacer" />
+        <Box flex={1} />
         <PageLink href={runHref(run.id)} onOpen={onOpen}>
           Whole page
         </PageLink>
@@ -178,7 +181,7 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
             behavior.problem && <Empty title="This behavior cannot be shown">{behavior.problem}</Empty>
           )}
         </Pane>
-        <Separator className="splitter is-flat" aria-label={`Height of the graph on the ${side}`} />
+        <Splitter isFlat label={`Height of the graph on the ${side}`} />
         <Pane id={`${side}-log`} defaultSize="40%" minSize="15%">
           <EventLog of={name} />
         </Pane>

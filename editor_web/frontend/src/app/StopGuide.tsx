@@ -10,7 +10,7 @@ export function StopGuide({ onOpen }: { readonly onOpen: (href: string) => void 
   return (
     <RecoveryGuide
       renderJog={(arm) => (
-        <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+        <Suspense fallback={<div role="status" aria-label="Loading" />}>
           <JogHere key={arm} arm={arm} />
         </Suspense>
       )}

@@ -1,10 +1,12 @@
 /** A sweep: how far it is, what it has shown, its runs. The run that is chosen stands in the address. */
 import '../features/sweeps/sweeps.css'
+import { Code } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { useLive } from '../api/live'
 import { sweepsApi } from '../api/sweeps'
 import type { SearchView, SweepRuns, SweepView } from '../api/types'
 import { Empty } from '../components/Empty'
+import { PageHead } from '../components/PageHead'
 import { PageLink } from '../components/PageLink'
 import { lookup } from '../document/dict'
 import { designText, isSearch } from '../document/searches'
@@ -40,7 +42,7 @@ export function SweepPage({ id, onOpen }: SweepPageProps) {
       </Empty>
     )
   }
-  if (!value) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!value) return <div role="status" aria-label="Loading" />
   return <Opened view={value.view} runs={value.runs} onOpen={onOpen} />
 }
 
@@ -84,10 +86,10 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
   }
   return (
     <div className="sweep-page">
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>{sweepName(line.id)}</h1>
-          <p className="quiet">
+      <PageHead
+        title={sweepName(line.id)}
+        words={
+          <>
             <PageLink href={SWEEPS_HREF} onOpen={() => onOpen(SWEEPS_HREF)}>
               All sweeps
             </PageLink>{' '}
@@ -95,13 +97,13 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
             <PageLink href={behaviorHref(line.behavior)} onOpen={() => onOpen(behaviorHref(line.behavior))}>
               {line.behavior}
             </PageLink>
-            , {designText(line)}, <span className="mono">{line.id}</span>
-          </p>
-        </div>
-        <VerdictBadge live={live} require={line.require} />
-        <span className="spacer" />
+            , {designText(line)}, <Code>{line.id}</Code>
+          </>
+        }
+        state={<VerdictBadge live={live} require={line.require} />}
+      >
         <SweepControls sweep={line.id} live={live} mayOperate={mayOperate} broken={broken} />
-      </header>
+      </PageHead>
       <div className="sweep-summary">
         {live.search ? <FailureCount search={live.search} towards={line.towards} /> : <SuccessRate live={live} />}
         <SweepProgress live={live} />

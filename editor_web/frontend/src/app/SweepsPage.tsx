@@ -3,6 +3,7 @@ import '../features/sweeps/sweeps.css'
 import { sweepsApi } from '../api/sweeps'
 import { useLive } from '../api/live'
 import { Empty } from '../components/Empty'
+import { PageHead } from '../components/PageHead'
 import { NewSweep } from '../features/sweeps/NewSweep'
 import { OtherResults, SweepList } from '../features/sweeps/SweepList'
 import { sweepHref } from './route'
@@ -14,16 +15,11 @@ export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void
   const mayOperate = useLive((s) => s.role) === 'operator'
   return (
     <div className="sweep-page">
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>Sweeps</h1>
-          <p className="quiet">How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors</p>
-        </div>
-        <span className="spacer" />
+      <PageHead title="Sweeps" words="How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors">
         {mayOperate && value && <NewSweep taken={value.sweeps.map((each) => each.id)} onMade={(id) => onOpen(sweepHref(id))} />}
-      </header>
+      </PageHead>
       {problem && <Empty title="The sweeps cannot be read">{problem}</Empty>}
-      {!value && !problem && <div className="page-wait" role="status" aria-label="Loading" />}
+      {!value && !problem && <div role="status" aria-label="Loading" />}
       {value && (
         <div className="sweep-list-page">
           <SweepList listed={value} href={sweepHref} onOpen={(id) => onOpen(sweepHref(id))} />

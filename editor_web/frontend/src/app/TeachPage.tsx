@@ -1,6 +1,7 @@
 /** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
+import { Box, VisuallyHidden } from '@mantine/core'
 import { useEffect, useState } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { Group, Panel as Pane } from 'react-resizable-panels'
 import { connectTeach, endPreview, useTeach } from '../api/teaching'
 import { hasCellView } from '../api/session'
 import type { ArmInfo, SessionBody } from '../api/types'
@@ -8,6 +9,7 @@ import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
+import { Splitter } from '../components/Splitter'
 import { CellFrame } from '../features/cell/CellFrame'
 import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
@@ -38,10 +40,11 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
   const cell = (
     <Panel
       title="Cell"
-      className="cell-panel teach-cell"
+      hasIcons
+      className="teach-cell"
       tools={
         <>
-          <span className="spacer" />
+          <Box flex={1} />
           {hasCellView(session) && isPreviewing && <CommandButton label="Hide the ghosts" tone="quiet" onPress={endPreview} />}
           {hasCellView(session) && <ShowMenu />}
           {hasCellView(session) && session?.role === 'operator' && <HandleMenu />}
@@ -54,9 +57,9 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
   )
   return (
     <div className="teach">
-      <h1 className="visually-hidden">Teach</h1>
+      <VisuallyHidden component="h1">Teach</VisuallyHidden>
       {arms === undefined ? (
-        <div className="page-wait" role="status" aria-label="Loading" />
+        <div role="status" aria-label="Loading" />
       ) : arm === undefined ? (
         <Empty title="No arm to teach">Serve a cell with arms: flexcell serve --cell behaviors/cells/dual_panda.yaml</Empty>
       ) : (
@@ -72,7 +75,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
               <Pane id="teach-cell" defaultSize="56%" minSize="25%">
                 {cell}
               </Pane>
-              <Separator className="splitter" aria-label="Width of the cell" />
+              <Splitter label="Width of the cell" />
               <Pane id="teach-tabs" defaultSize="44%" minSize="30%">
                 <Tabs arms={arms} arm={arm} />
               </Pane>

@@ -4,6 +4,7 @@ import { IconGitCompare } from '@tabler/icons-react'
 import { useState } from 'react'
 import { comparisonApi } from '../api/comparison'
 import { Empty } from '../components/Empty'
+import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { DurationTable } from '../features/trend/DurationTable'
 import { RunBars } from '../features/trend/RunBars'
@@ -19,7 +20,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
   const [chosen, setChosen] = useState<readonly string[]>([])
   const { value: trend, problem } = useFetched(`trend ${last} ${behavior}`, () => comparisonApi.trend(behavior, last))
   if (problem) return <Empty title="The runs cannot be read">{problem}</Empty>
-  if (!trend) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!trend) return <div role="status" aria-label="Loading" />
   // Newest first, so the older one is the left one.
   const [left, right] = trend.runs
     .map((run) => run.id)
@@ -27,14 +28,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
     .toReversed()
   return (
     <div className={styles.page}>
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>Last runs of {behavior}</h1>
-          <p className="quiet" role="status">
-            {countText(trend)}
-          </p>
-        </div>
-        <span className="spacer" />
+      <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isSaid>
         <NativeSelect
           size="xs"
           aria-label="Number of runs"
@@ -51,7 +45,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
         >
           Compare
         </Button>
-      </header>
+      </PageHead>
       {trend.runs.length === 0 ? (
         <Empty title="No runs">The journal has no run of this behavior.</Empty>
       ) : (

@@ -1,9 +1,13 @@
 /** How the parts of a behavior's page are placed: panes beside one another, or one view at a time. */
-import { Tabs } from '@mantine/core'
+import { Box, Flex, Tabs } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { Placed, useMovable } from '../components/Movable'
+import { Splitter } from '../components/Splitter'
+import { TabCount } from '../components/TabCount'
+import tabs from '../components/tabs.module.css'
 import { ViewBoundary } from '../components/ViewBoundary'
-import { Group, Panel as Pane, Separator, useDefaultLayout } from 'react-resizable-panels'
+import { Group, Panel as Pane, useDefaultLayout } from 'react-resizable-panels'
+import classes from './pages.module.css'
 import type { RunLayout } from './runLayout'
 
 export type Tab = 'parameters' | 'node' | 'outline' | 'holds' | 'problems' | 'log' | 'failure'
@@ -11,10 +15,16 @@ export type Tab = 'parameters' | 'node' | 'outline' | 'holds' | 'problems' | 'lo
 /** What can be done with the selected node stands below the graph, for there is no room beside it. */
 export function NarrowGraph({ graph, card }: { graph: ReactNode; card: ReactNode }) {
   return (
-    <div className="narrow-graph">
-      <div className="narrow-canvas">{graph}</div>
-      {card && <div className="narrow-card">{card}</div>}
-    </div>
+    <Flex direction="column" h="100%">
+      <Box flex={1} mih={0}>
+        {graph}
+      </Box>
+      {card && (
+        <Box mah="48%" bg="var(--surface)" style={{ overflow: 'auto', borderTop: '1px solid var(--line-strong)' }}>
+          {card}
+        </Box>
+      )}
+    </Flex>
   )
 }
 
@@ -51,7 +61,7 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
       {tabs.source}
       {!isDebug && arrangement !== 'operate' && <Placed host={tabs.host} isHidden />}
       {!hasGraph && <Placed host={graph.host} isHidden />}
-      <Group orientation="vertical" className="work-space" {...page}>
+      <Group orientation="vertical" className={classes.work} data-work-space {...page}>
         <Pane key="upper" id={id('upper')} defaultSize={isDebug ? '62%' : '100%'} minSize="25%">
           <Group orientation="horizontal" {...upper}>
             {hasGraph && (
@@ -59,13 +69,13 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
                 {arrangement === 'operate' ? <GraphAndTabs graph={graph.host} tabs={tabs.host} /> : <Placed host={graph.host} />}
               </Pane>
             )}
-            {hasGraph && <Separator key="width" className="splitter" aria-label="Width of the graph" />}
+            {hasGraph && <Splitter key="width" label="Width of the graph" />}
             <Pane key="right" id={id('right')} defaultSize={hasGraph ? RIGHT[arrangement] : '100%'} minSize="22%">
               <Group orientation="vertical" {...right}>
                 <Pane key="cell" id={id('cell')} defaultSize={isDebug ? '64%' : '100%'} minSize="15%">
                   <ViewBoundary name="Cell">{cell}</ViewBoundary>
                 </Pane>
-                {isDebug && <Separator key="height" className="splitter is-flat" aria-label="Height of the cell" />}
+                {isDebug && <Splitter key="height" isFlat label="Height of the cell" />}
                 {isDebug && (
                   <Pane key="tabs" id={id('tabs')} defaultSize="36%" minSize="15%">
                     <Placed host={tabs.host} />
@@ -75,7 +85,7 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
             </Pane>
           </Group>
         </Pane>
-        {isDebug && <Separator key="height" className="splitter is-flat" aria-label="Height of the graph" />}
+        {isDebug && <Splitter key="height" isFlat label="Height of the graph" />}
         {isDebug && (
           <Pane key="lower" id={id('lower')} defaultSize="38%" minSize="12%">
             <CourseAndRecords course={course} records={records} />
@@ -95,7 +105,7 @@ function GraphAndTabs({ graph, tabs }: { readonly graph: HTMLElement; readonly t
       <Pane id="operate-graph" defaultSize="58%" minSize="20%">
         <Placed host={graph} />
       </Pane>
-      <Separator className="splitter is-flat" aria-label="Height of the graph" />
+      <Splitter isFlat label="Height of the graph" />
       <Pane id="operate-tabs" defaultSize="42%" minSize="15%">
         <Placed host={tabs} />
       </Pane>
@@ -109,7 +119,7 @@ function CourseAndRecords({ course, records }: Pick<WideProps, 'course' | 'recor
       <Pane id="debug-course" defaultSize="56%" minSize="20%">
         <ViewBoundary name="Timeline">{course}</ViewBoundary>
       </Pane>
-      <Separator className="splitter" aria-label="Width of the timeline" />
+      <Splitter label="Width of the timeline" />
       <Pane id="debug-records" defaultSize="44%" minSize="20%">
         <ViewBoundary name="Log">{records}</ViewBoundary>
       </Pane>
@@ -152,12 +162,18 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
   // Another layout may have had more of them.
   const shown = names.includes(tab) ? tab : (names[0] ?? tab)
   return (
-    <Tabs value={shown} onChange={(value) => onTab((value ?? 'parameters') as Tab)} className="side-tabs" keepMounted>
+    <Tabs
+      value={shown}
+      onChange={(value) => onTab((value ?? 'parameters') as Tab)}
+      className={tabs.tabs ?? ''}
+      classNames={{ list: tabs.list ?? '', tab: tabs.tab ?? '', panel: tabs.panel ?? '' }}
+      keepMounted
+    >
       <Tabs.List>
         {names.map((name) => (
           <Tabs.Tab key={name} value={name}>
             {TABS[name]}
-            {(counts[name] ?? 0) > 0 && <span className="tab-count">{counts[name]}</span>}
+            {(counts[name] ?? 0) > 0 && <TabCount count={counts[name] ?? 0} />}
           </Tabs.Tab>
         ))}
       </Tabs.List>
@@ -167,5 +183,14 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
         </Tabs.Panel>
       ))}
     </Tabs>
+  )
+}
+
+/** What a tab shows; flush where it has its own edges. */
+export function TabBody({ children, isFlush = false }: { readonly children: ReactNode; readonly isFlush?: boolean }) {
+  return (
+    <Box h="100%" display={isFlush ? 'flex' : 'block'} p={isFlush ? 0 : 14} style={{ flexDirection: 'column', overflow: 'auto' }}>
+      {children}
+    </Box>
   )
 }

@@ -3,18 +3,7 @@ import '@fontsource-variable/inter/wght.css'
 import '@mantine/core/styles.css'
 import './styles/tokens.css'
 import './styles/base.css'
-import './styles/status.css'
-import './styles/frame.css'
-import './styles/panels.css'
-import './styles/forms.css'
-import './styles/graph.css'
-import './styles/outline.css'
-import './styles/log.css'
-import './styles/control.css'
-import './styles/marks.css'
-import './styles/node-card.css'
-import './styles/robots.css'
-import './styles/small.css'
+import './styles/shared.css'
 import { MantineProvider } from '@mantine/core'
 import { createRoot, type Root } from 'react-dom/client'
 import { ViewBoundary } from '../components/ViewBoundary'
@@ -25,11 +14,11 @@ import { theme } from './theme'
 // STOP is a tree of its own: whatever fails in the page, it stays.
 rootAt('stop').render(<StopCell />)
 rootAt('root').render(
-  <ViewBoundary name="The page">
-    <MantineProvider theme={theme} defaultColorScheme="auto">
+  <MantineProvider theme={theme} defaultColorScheme="auto">
+    <ViewBoundary name="The page">
       <App />
-    </MantineProvider>
-  </ViewBoundary>,
+    </ViewBoundary>
+  </MantineProvider>,
 )
 
 function rootAt(id: string): Root {

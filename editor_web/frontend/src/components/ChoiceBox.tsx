@@ -1,8 +1,9 @@
 /** A box to choose from by typing: a field and a list below it, worked by the arrow keys. */
+import { Input, Kbd, Text } from '@mantine/core'
 import { useEffect, useId, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import { fit, found } from '../document/editing/search'
 import type { Point } from '../document/geometry'
-import './choiceBox.css'
+import classes from './ChoiceBox.module.css'
 import { useModal } from './modal'
 
 export interface Choice {
@@ -107,15 +108,17 @@ export function ChoiceBox({
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
-      className={`choice-box${at ? ' is-placed' : ''}`}
+      className={classes.box}
+      data-placed={at ? true : undefined}
       style={style}
       aria-label={label}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}
     >
-      <div className="choice-body">
-        <input
-          className="choice-input"
+      <div>
+        <Input
+          variant="unstyled"
+          classNames={{ input: classes.input ?? '' }}
           role="combobox"
           aria-expanded="true"
           aria-controls={id}
@@ -132,7 +135,14 @@ export function ChoiceBox({
           }}
           onKeyDown={onKeyDown}
         />
-        <ul className="choices" role="listbox" id={id} aria-label={label} ref={list}>
+        <ul
+          className="plain-list"
+          style={{ maxHeight: 340, padding: 5, overflowY: 'auto', cursor: 'pointer' }}
+          role="listbox"
+          id={id}
+          aria-label={label}
+          ref={list}
+        >
           {shown.map((choice, position) => (
             // oxlint-disable-next-line jsx-a11y/click-events-have-key-events -- the field above has the keys of the list
             <li
@@ -141,25 +151,42 @@ export function ChoiceBox({
               role="option"
               aria-selected={choice === chosen}
               aria-disabled={choice.obstacle ? true : undefined}
-              className={`choice${choice === chosen ? ' is-chosen' : ''}`}
               title={choice.obstacle}
               onPointerMove={() => setIndex(position)}
               onClick={() => run(choice)}
             >
-              {choice.group !== shown[position - 1]?.group && <span className="choice-group">{choice.group}</span>}
-              <span className="choice-line">
-                {choice.icon && <span className="choice-icon">{choice.icon}</span>}
-                <span className="choice-title">{choice.title}</span>
-                {choice.detail && <span className="choice-detail">{choice.detail}</span>}
-                {choice.hint && <kbd>{choice.hint}</kbd>}
+              {choice.group !== shown[position - 1]?.group && (
+                <Text px={9} pt={7} pb={2} fz="0.74rem" fw={620} c="var(--quiet)" style={{ cursor: 'default' }}>
+                  {choice.group}
+                </Text>
+              )}
+              <span className={classes.line}>
+                {choice.icon && (
+                  <Text span inherit c="var(--quiet)" style={{ display: 'inline-flex', flex: 'none' }}>
+                    {choice.icon}
+                  </Text>
+                )}
+                <Text span inherit truncate fw={560} flex="none" maw="62%">
+                  {choice.title}
+                </Text>
+                {choice.detail && (
+                  <Text span truncate flex={1} miw={0} fz="0.78rem" c="var(--quiet)">
+                    {choice.detail}
+                  </Text>
+                )}
+                {choice.hint && (
+                  <Kbd size="xs" ml="auto" style={{ whiteSpace: 'nowrap' }}>
+                    {choice.hint}
+                  </Kbd>
+                )}
               </span>
             </li>
           ))}
         </ul>
         {shown.length === 0 && (
-          <p className="choice-none" role="status">
+          <Text px={14} pt={10} pb={14} size="sm" c="var(--quiet)" role="status">
             {nothing}
-          </p>
+          </Text>
         )}
       </div>
     </dialog>

@@ -1,5 +1,7 @@
 /** A button that stays reachable while it cannot be used, and then says why. */
+import { Button, type ButtonProps } from '@mantine/core'
 import type { ReactNode } from 'react'
+import classes from './CommandButton.module.css'
 
 export interface CommandButtonProps {
   readonly label: string
@@ -18,22 +20,33 @@ export interface CommandButtonProps {
   readonly isCompact?: boolean
 }
 
+const TONES: Readonly<Record<NonNullable<CommandButtonProps['tone']>, ButtonProps>> = {
+  plain: { variant: 'default' },
+  strong: { variant: 'filled' },
+  quiet: { variant: 'subtle', color: 'gray' },
+  danger: { variant: 'default', c: 'var(--failed)', bd: '1px solid var(--failed)' },
+}
+
 export function CommandButton(props: CommandButtonProps) {
   const { label, hint, obstacle, onObstacle, onPress, icon, shortcut, isPressed, tone = 'plain', isCompact = false } = props
   const isOff = obstacle !== undefined
   const words = isOff ? `Not possible: ${obstacle}` : [hint, shortcut && `Key: ${shortcut}`].filter(Boolean).join('. ')
   return (
-    <button
-      type="button"
-      className={`command is-${tone}${isCompact ? ' is-compact' : ''}`}
+    <Button
+      size="xs"
+      px="xs"
+      {...(isOff ? { variant: 'default', 'data-disabled': true } : isPressed ? { variant: 'light' } : TONES[tone])}
+      leftSection={icon}
+      className={classes.command}
+      classNames={{ section: classes.icon ?? '', label: classes.label ?? '' }}
+      data-compact={isCompact || undefined}
       aria-disabled={isOff || undefined}
       {...(isPressed === undefined ? {} : { 'aria-pressed': isPressed })}
       {...(shortcut ? { 'aria-keyshortcuts': shortcut } : {})}
       title={words || undefined}
       onClick={() => (isOff ? onObstacle?.() : onPress())}
     >
-      {icon}
-      <span className="command-label">{label}</span>
-    </button>
+      {label}
+    </Button>
   )
 }

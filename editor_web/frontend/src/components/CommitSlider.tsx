@@ -1,4 +1,5 @@
 /** A slider whose value counts when it is let go; until the server has taken it, it stays where it was put. */
+import { Group, Text } from '@mantine/core'
 import { useEffect, useId, useRef, useState } from 'react'
 
 const PATIENCE_MS = 1500
@@ -51,9 +52,12 @@ export function CommitSlider({ label, value, min, max, step, words, onCommit, ob
   }
 
   return (
-    <div className="commit-slider" title={obstacle ? `Not possible: ${obstacle}` : hint}>
-      <label htmlFor={id}>{label}</label>
+    <Group gap="2xs" wrap="nowrap" fz="0.82rem" title={obstacle ? `Not possible: ${obstacle}` : hint}>
+      <Text component="label" htmlFor={id} inherit c="var(--label, var(--quiet))">
+        {label}
+      </Text>
       <input
+        style={{ width: '6.5rem', accentColor: 'var(--accent)' }}
         id={id}
         type="range"
         min={min}
@@ -67,7 +71,9 @@ export function CommitSlider({ label, value, min, max, step, words, onCommit, ob
         onKeyUp={commit}
         onBlur={commit}
       />
-      <output htmlFor={id}>{words(shown)}</output>
-    </div>
+      <Text component="output" htmlFor={id} inherit miw="2.6em" fw={600} style={{ fontVariantNumeric: 'tabular-nums' }}>
+        {words(shown)}
+      </Text>
+    </Group>
   )
 }

@@ -1,6 +1,7 @@
 /** A dialog over the page: the browser's own, which keeps the keyboard inside and closes with Escape. */
-import { CloseButton } from '@mantine/core'
+import { CloseButton, Group, Title } from '@mantine/core'
 import { useId, useRef, type ReactNode } from 'react'
+import classes from './Dialog.module.css'
 import { useModal } from './modal'
 import { ViewBoundary } from './ViewBoundary'
 
@@ -20,16 +21,18 @@ export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
-      className="dialog"
+      className={`dialog ${classes.dialog}`}
       aria-labelledby={id}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}
     >
-      <div className="dialog-body">
-        <div className="dialog-head">
-          <h2 id={id}>{title}</h2>
+      <div className={classes.body}>
+        <Group justify="space-between" wrap="nowrap" mb="2xs">
+          <Title order={2} size="md" id={id}>
+            {title}
+          </Title>
           <CloseButton aria-label="Close" onClick={onClose} />
-        </div>
+        </Group>
         <ViewBoundary name={title}>{children}</ViewBoundary>
       </div>
     </dialog>

@@ -1,6 +1,6 @@
 /** How far the goal of a node is: a bar where its feedback tells a share, and its words. */
+import { Group, Progress, Text } from '@mantine/core'
 import { lookup } from '../document/dict'
-import './goalLine.css'
 import { useGoals } from '../api/goals'
 import { useLive } from '../api/live'
 
@@ -12,20 +12,21 @@ export function GoalLine({ path }: { path: string }) {
   const percent = goal.share === null ? undefined : Math.round(goal.share * 100)
   const words = [percent !== undefined && `${percent} %`, goal.words].filter(Boolean).join(', ') || goal.address
   return (
-    <span className="goal-line" title={`${goal.address} ${goal.status}`}>
-      <span className="goal-words">{words}</span>
+    <Group gap="3xs" wrap="nowrap" miw={0} flex={1} c="var(--active)" title={`${goal.address} ${goal.status}`}>
+      <Text inherit truncate style={{ fontVariantNumeric: 'tabular-nums' }}>
+        {words}
+      </Text>
       {percent !== undefined && (
-        <span
-          className="goal-bar"
-          role="progressbar"
+        <Progress
+          flex={1}
+          miw={24}
+          size={5}
+          bg="var(--line)"
+          color="var(--active)"
+          value={percent}
           aria-label={`Progress of ${goal.address}`}
-          aria-valuenow={percent}
-          aria-valuemin={0}
-          aria-valuemax={100}
-        >
-          <span style={{ width: `${percent}%` }} />
-        </span>
+        />
       )}
-    </span>
+    </Group>
   )
 }

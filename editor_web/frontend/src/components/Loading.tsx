@@ -13,7 +13,7 @@ interface LoadingProps {
 export function Loading({ name, of = '', children }: LoadingProps) {
   return (
     <ViewBoundary name={name} of={of}>
-      <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>{children}</Suspense>
+      <Suspense fallback={<div role="status" aria-label="Loading" />}>{children}</Suspense>
     </ViewBoundary>
   )
 }

@@ -2,16 +2,18 @@
 import { Tabs } from '@mantine/core'
 import { useState, type ReactNode } from 'react'
 import { Loading } from './Loading'
+import classes from './tabs.module.css'
 
 interface OpenedTabsProps {
   readonly label: string
   readonly bodies: Readonly<Record<string, ReactNode>>
-  readonly className?: string
+  /** Do the tabs stand for the titles of the panels in them? */
+  readonly isDock?: boolean
   /** Brings this tab to the front, each time that it is another object. */
   readonly asked?: { readonly tab: string } | undefined
 }
 
-export function OpenedTabs({ label, bodies, className = '', asked }: OpenedTabsProps) {
+export function OpenedTabs({ label, bodies, isDock = false, asked }: OpenedTabsProps) {
   const names = Object.keys(bodies)
   const first = names[0] ?? ''
   const [tab, setTab] = useState(asked?.tab ?? first)
@@ -29,7 +31,13 @@ export function OpenedTabs({ label, bodies, className = '', asked }: OpenedTabsP
   }
 
   return (
-    <Tabs value={tab} onChange={open} className={`side-tabs ${className}`} keepMounted>
+    <Tabs
+      value={tab}
+      onChange={open}
+      className={isDock ? `${classes.tabs} ${classes.dock}` : (classes.tabs ?? '')}
+      classNames={{ list: classes.list ?? '', tab: classes.tab ?? '', panel: classes.panel ?? '' }}
+      keepMounted
+    >
       <Tabs.List aria-label={label}>
         {names.map((name) => (
           <Tabs.Tab key={name} value={name}>

@@ -1,5 +1,5 @@
 /** One parameter as the input that fits its kind. */
-import { NumberInput, Select, Switch, Textarea, TextInput } from '@mantine/core'
+import { NumberInput, Select, Switch, Text, Textarea, TextInput } from '@mantine/core'
 import { rangeText, type Field } from '../document/schema'
 
 export interface ParameterFieldProps {
@@ -17,7 +17,11 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
     label: (
       <>
         {field.label}
-        {(range || field.unit) && <span className="field-range">{[range, field.unit].filter(Boolean).join(' ')}</span>}
+        {(range || field.unit) && (
+          <Text span ml="2xs" size="xs" c="var(--quiet)">
+            {[range, field.unit].filter(Boolean).join(' ')}
+          </Text>
+        )}
       </>
     ),
     description: field.description || undefined,
@@ -35,7 +39,13 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
           allowDecimal={field.kind === 'number'}
           clampBehavior="none"
           step={stepOf(field)}
-          rightSection={field.unit ? <span className="field-unit">{field.unit}</span> : undefined}
+          rightSection={
+            field.unit ? (
+              <Text size="xs" c="var(--quiet)">
+                {field.unit}
+              </Text>
+            ) : undefined
+          }
           rightSectionWidth={field.unit ? 44 : undefined}
         />
       )
@@ -65,7 +75,7 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
       return (
         <Textarea
           {...common}
-          classNames={{ input: 'mono' }}
+          styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
           autosize
           minRows={2}
           value={String(value)}

@@ -28,5 +28,5 @@ const ICONS = {
 
 export function StatusIcon({ status, size = 16 }: { status: Status; size?: number }) {
   const Icon = ICONS[status]
-  return <Icon size={size} className={`status-icon is-${status}`} aria-hidden />
+  return <Icon size={size} data-status={status} style={{ flex: 'none', color: 'var(--status)' }} aria-hidden />
 }

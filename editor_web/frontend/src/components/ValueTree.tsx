@@ -1,8 +1,9 @@
 /** Any JSON value as a tree to unfold; short values stand on one line. */
-import './valueTree.css'
+import { Text, UnstyledButton } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { memo, useState } from 'react'
 import { inShort, isShort } from '../document/values'
+import classes from './ValueTree.module.css'
 
 interface ValueTreeProps {
   readonly label: string
@@ -13,9 +14,9 @@ interface ValueTreeProps {
 
 export const ValueTree = memo(function ValueTree({ label, value, open = 1 }: ValueTreeProps) {
   return (
-    <ul className="value-tree" aria-label={label}>
+    <ul className={classes.tree} aria-label={label}>
       {isShort(value) ? (
-        <li className="value-line">
+        <li className={classes.line}>
           <Short value={value} />
         </li>
       ) : (
@@ -34,8 +35,8 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
   const [isOpen, setOpen] = useState(open > 0)
   if (isShort(value)) {
     return (
-      <li className="value-line">
-        <span className="value-name">{name}</span>
+      <li className={classes.line}>
+        <Name>{name}</Name>
         <Short value={value} />
       </li>
     )
@@ -43,11 +44,15 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
   const Chevron = isOpen ? IconChevronDown : IconChevronRight
   return (
     <li>
-      <button type="button" className="value-fold" aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
+      <UnstyledButton className={classes.fold} aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
         <Chevron size={12} aria-hidden />
-        <span className="value-name">{name}</span>
-        {!isOpen && <span className="quiet">{inShort(value)}</span>}
-      </button>
+        <Name>{name}</Name>
+        {!isOpen && (
+          <Text span inherit c="var(--quiet)">
+            {inShort(value)}
+          </Text>
+        )}
+      </UnstyledButton>
       {isOpen && (
         <ul>
           <Parts value={value} open={open - 1} />
@@ -58,5 +63,17 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
 }
 
 function Short({ value }: { value: unknown }) {
-  return <span className={`value is-${value === null ? 'null' : typeof value}`}>{inShort(value)}</span>
+  return (
+    <span className={classes.value} data-type={value === null ? 'null' : typeof value}>
+      {inShort(value)}
+    </span>
+  )
+}
+
+function Name({ children }: { readonly children: string }) {
+  return (
+    <Text span inherit flex="none" c="var(--quiet)">
+      {children}
+    </Text>
+  )
 }

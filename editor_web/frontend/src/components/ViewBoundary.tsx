@@ -1,7 +1,7 @@
 /** Keeps a view that fails from taking others with it: says what failed, tries again, hands out the details. */
+import { Button, Code, Group, Stack, Text } from '@mantine/core'
 import { Component, useState, type ErrorInfo, type ReactNode } from 'react'
 import { forgetFailedLoads } from './lazyView'
-import './viewBoundary.css'
 
 interface ViewBoundaryProps {
   /** What it is called on the page, `Graph`. */
@@ -63,20 +63,30 @@ function FailedView({ name, failure, onAgain }: FailedViewProps) {
   }
 
   return (
-    <section className="failed-view" role="alert" aria-label={`Failure of ${name}`}>
+    <Stack
+      component="section"
+      role="alert"
+      aria-label={`Failure of ${name}`}
+      gap="2xs"
+      px="md"
+      py="sm"
+      fz="sm"
+      bg="var(--failed-soft)"
+      style={{ borderInlineStart: '4px solid var(--failed)', overflow: 'auto', overflowWrap: 'anywhere' }}
+    >
       <strong>{name} cannot be shown</strong>
-      <p>{messageOf(failure.error)}</p>
-      <div className="command-row">
-        <button type="button" className="command is-strong" onClick={onAgain}>
+      <Text inherit>{messageOf(failure.error)}</Text>
+      <Group gap="3xs">
+        <Button size="compact-sm" onClick={onAgain}>
           Try again
-        </button>
-        <button type="button" className="command" onClick={copy}>
+        </Button>
+        <Button size="compact-sm" variant="default" onClick={copy}>
           {copied === 'yes' ? 'Copied' : 'Copy details'}
-        </button>
-      </div>
-      <p className="quiet">The rest of the page still works. Please report the details.</p>
-      {copied === 'refused' && <pre>{details}</pre>}
-    </section>
+        </Button>
+      </Group>
+      <Text inherit>The rest of the page still works. Please report the details.</Text>
+      {copied === 'refused' && <Code block>{details}</Code>}
+    </Stack>
   )
 }
 

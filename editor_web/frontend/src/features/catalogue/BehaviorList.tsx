@@ -1,12 +1,14 @@
 /** The behaviors of the project, to choose one. */
-import { CloseButton, TextInput } from '@mantine/core'
+import { Box, CloseButton, Group, Text, TextInput, Title } from '@mantine/core'
 import { IconSearch } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
 import type { BehaviorSummary } from '../../api/types'
 import { Empty } from '../../components/Empty'
+import { SideLink } from '../../components/SideLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive } from '../../document/runState'
+import classes from './BehaviorList.module.css'
 import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
@@ -26,13 +28,16 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
   const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(query))
   const others = found.filter((behavior) => !fits(behavior))
   return (
-    <nav className="behavior-list" aria-label="Behaviors">
-      <div className="side-head">
-        <h2 className="side-title">Behaviors</h2>
+    <nav aria-label="Behaviors">
+      <Group justify="space-between" mb="3xs">
+        <Title order={2} fz="xs" px="2xs" c="var(--quiet)">
+          Behaviors
+        </Title>
         {onMade && <NewBehavior onMade={onMade} />}
-      </div>
+      </Group>
       <TextInput
         size="xs"
+        mb="2xs"
         aria-label="Find a behavior"
         placeholder="Find"
         leftSection={<IconSearch size={14} aria-hidden />}
@@ -51,15 +56,19 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
         ))}
       </ul>
       {others.length > 0 && (
-        <details className="other-cells" open={query !== '' || others.some((behavior) => behavior.id === current)}>
-          <summary>Of other cells ({others.length})</summary>
-          <p className="quiet">They cannot be started in this cell.</p>
+        <Box component="details" mt="sm" open={query !== '' || others.some((behavior) => behavior.id === current)}>
+          <Text component="summary" size="sm" px="2xs" py="4xs" c="var(--quiet)" style={{ cursor: 'pointer' }}>
+            Of other cells ({others.length})
+          </Text>
+          <Text size="xs" px="2xs" c="var(--quiet)">
+            They cannot be started in this cell.
+          </Text>
           <ul className="plain-list">
             {others.map((behavior) => (
               <Item key={behavior.id} {...{ behavior, current, href, onOpen }} isRunning={false} />
             ))}
           </ul>
-        </details>
+        </Box>
       )}
     </nav>
   )
@@ -77,40 +86,38 @@ interface ItemProps extends Pick<BehaviorListProps, 'current' | 'href' | 'onOpen
 function Item({ behavior, current, href, onOpen, isRunning }: ItemProps) {
   return (
     <li>
-      <a
+      <SideLink
         href={href(behavior.id)}
-        className={`side-item${behavior.id === current ? ' is-current' : ''}`}
-        aria-current={behavior.id === current ? 'page' : undefined}
+        isCurrent={behavior.id === current}
         title={behavior.fit.obstacle || undefined}
-        onClick={(event) => {
-          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-          event.preventDefault()
-          onOpen(behavior.id)
-        }}
-      >
-        <span className="side-item-name">
-          {behavior.name}
-          {isRunning && <span className="live-dot" role="img" aria-label="active" />}
-        </span>
-        <span className="side-item-text">{fits(behavior) ? folderOf(behavior.id) : `cell ${behavior.fit.cell}`}</span>
-        {(behavior.errors > 0 || behavior.warnings > 0) && (
-          <span className="side-item-problems">
+        onOpen={() => onOpen(behavior.id)}
+        label={
+          <Group component="span" gap="2xs" wrap="nowrap">
+            {behavior.name}
+            {isRunning && <span className={classes.live} role="img" aria-label="active" />}
+          </Group>
+        }
+        description={
+          <>
+            <Text span inherit truncate display="block">
+              {fits(behavior) ? folderOf(behavior.id) : `cell ${behavior.fit.cell}`}
+            </Text>
             {behavior.errors > 0 && <Count status="failed" count={behavior.errors} word="error" />}
             {behavior.warnings > 0 && <Count status="warning" count={behavior.warnings} word="warning" />}
-          </span>
-        )}
-      </a>
+          </>
+        }
+      />
     </li>
   )
 }
 
 function Count({ status, count, word }: { status: 'failed' | 'warning'; count: number; word: string }) {
   return (
-    <span className={`count is-${status}`}>
+    <Group component="span" display="inline-flex" gap="4xs" mr="xs" fw={600} c="var(--status)" data-status={status}>
       <StatusIcon status={status} size={12} />
       {count} {word}
       {count === 1 ? '' : 's'}
-    </span>
+    </Group>
   )
 }
 

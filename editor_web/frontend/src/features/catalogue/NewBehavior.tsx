@@ -1,4 +1,5 @@
 /** Making a new behavior: its name, where its file goes, and what it begins as. */
+import { Box, Button, Group, NativeSelect, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -9,18 +10,25 @@ import { Dialog } from '../../components/Dialog'
 import { wallTime } from '../../document/time'
 
 const TEMPLATES = [
-  { value: 'machine', words: 'State machine: one state after the other' },
-  { value: 'sequence', words: 'Behavior tree, beginning with a sequence' },
-  { value: 'concurrency', words: 'Several things side by side' },
+  { value: 'machine', label: 'State machine: one state after the other' },
+  { value: 'sequence', label: 'Behavior tree, beginning with a sequence' },
+  { value: 'concurrency', label: 'Several things side by side' },
 ]
 
 export function NewBehavior({ onMade }: { onMade: (id: string) => void }) {
   const [isOpen, setOpen] = useState(false)
   return (
     <>
-      <button type="button" className="command is-quiet new-behavior" onClick={() => setOpen(true)}>
-        <IconPlus size={14} aria-hidden /> New
-      </button>
+      <Button
+        variant="subtle"
+        color="gray"
+        size="compact-xs"
+        leftSection={<IconPlus size={14} aria-hidden />}
+        data-tour="new-behavior"
+        onClick={() => setOpen(true)}
+      >
+        New
+      </Button>
       <Dialog isOpen={isOpen} title="New behavior" onClose={() => setOpen(false)}>
         <NewForm
           onMade={(id) => {
@@ -52,8 +60,11 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
   const file = name.trim().replace(/[^A-Za-z0-9_-]+/g, '_')
   const id = ['behaviors', folder.trim().replace(/^\/+|\/+$/g, ''), `${file || 'name'}.yaml`].filter(Boolean).join('/')
   return (
-    <form
-      className="new-form"
+    <Stack
+      component="form"
+      gap="sm"
+      miw="min(24rem, 80vw)"
+      data-tour="new-form"
       onSubmit={(event) => {
         event.preventDefault()
         if (!file) setProblem('It needs a name')
@@ -64,34 +75,19 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
           )
       }}
     >
-      <label>
-        Name
-        <input className="new-input" ref={first} value={name} onChange={(event) => setName(event.currentTarget.value)} />
-      </label>
-      <label>
-        Folder, if any
-        <input className="new-input" value={folder} onChange={(event) => setFolder(event.currentTarget.value)} />
-      </label>
-      <label>
-        Begins as
-        <select className="new-input" value={template} onChange={(event) => setTemplate(event.currentTarget.value)}>
-          {TEMPLATES.map((each) => (
-            <option key={each.value} value={each.value}>
-              {each.words}
-            </option>
-          ))}
-        </select>
-      </label>
-      <p className="quiet mono new-id">{id}</p>
+      <TextInput label="Name" ref={first} value={name} onChange={(event) => setName(event.currentTarget.value)} />
+      <TextInput label="Folder, if any" value={folder} onChange={(event) => setFolder(event.currentTarget.value)} />
+      <NativeSelect label="Begins as" data={TEMPLATES} value={template} onChange={(event) => setTemplate(event.currentTarget.value)} />
+      <Text size="sm" ff="monospace" c="var(--quiet)" style={{ overflowWrap: 'anywhere' }}>
+        {id}
+      </Text>
       {problem && (
-        <p className="is-failed" role="alert">
+        <Text size="sm" c="var(--failed)" role="alert">
           {problem}
-        </p>
+        </Text>
       )}
-      <button type="submit" className="command is-strong">
-        Create
-      </button>
-    </form>
+      <Button type="submit">Create</Button>
+    </Stack>
   )
 }
 
@@ -104,23 +100,29 @@ function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
   }, [])
   if (problem === undefined && all.length === 0) return null
   return (
-    <details className="deleted">
-      <summary>Deleted behaviors</summary>
+    <Box component="details" mt="md" fz="sm">
+      <Text component="summary" inherit style={{ cursor: 'pointer' }}>
+        Deleted behaviors
+      </Text>
       {problem && (
-        <p className="is-failed" role="alert">
+        <Text inherit c="var(--failed)" role="alert">
           {problem}
-        </p>
+        </Text>
       )}
       <ul className="plain-list">
         {all.map((each) => (
-          <li key={each.id}>
+          <Group component="li" key={each.id} justify="space-between" wrap="nowrap" py="4xs" style={{ overflowWrap: 'anywhere' }}>
             <span>
-              <span className="mono">{each.id.replace(/^behaviors\//, '')}</span>{' '}
-              <span className="quiet">last version {wallTime(each.saved_at)}</span>
+              <Text span inherit ff="monospace">
+                {each.id.replace(/^behaviors\//, '')}
+              </Text>{' '}
+              <Text span inherit c="var(--quiet)">
+                last version {wallTime(each.saved_at)}
+              </Text>
             </span>
-            <button
-              type="button"
-              className="command"
+            <Button
+              size="compact-sm"
+              variant="default"
               onClick={() => {
                 void relations.restore(each.id).then(
                   (made) => onRestored(made.id),
@@ -129,10 +131,10 @@ function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
               }}
             >
               Restore
-            </button>
-          </li>
+            </Button>
+          </Group>
         ))}
       </ul>
-    </details>
+    </Box>
   )
 }

@@ -1,5 +1,5 @@
 /** The breakpoints of one node: before its entry and after its outcome, each with condition and count. */
-import { NumberInput, Switch, TextInput } from '@mantine/core'
+import { Code, Group, NumberInput, Stack, Switch, Text, TextInput, UnstyledButton, VisuallyHidden } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { editBreakpoints, toggleBreakpoint, useBreakpoints } from '../../api/breakpoints'
 import { breakpointWords, matches, replaced, type CompleteBreakpoint } from '../../document/breakpoints'
@@ -13,7 +13,7 @@ export function BreakpointEditor({ path, isOff }: { path: string; isOff: string 
   const all = useBreakpoints()
   const wide = all.filter((each) => each.path !== path && matches(each.path, path))
   return (
-    <div className="breakpoints">
+    <Stack gap="2xs" pt="3xs">
       {PLACES.map(({ when, label }) => {
         const set = all.find((each) => each.path === path && each.when === when)
         return (
@@ -30,11 +30,11 @@ export function BreakpointEditor({ path, isOff }: { path: string; isOff: string 
         )
       })}
       {wide.map((each) => (
-        <p key={`${each.path}${each.when}`} className="quiet">
-          Also by <code>{each.path}</code>: {breakpointWords(each)}
-        </p>
+        <Text key={`${each.path}${each.when}`} size="xs" c="var(--quiet)">
+          Also by <Code>{each.path}</Code>: {breakpointWords(each)}
+        </Text>
       ))}
-    </div>
+    </Stack>
   )
 }
 
@@ -54,8 +54,12 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
   }
 
   return (
-    <form
-      className="breakpoint-details"
+    <Group
+      component="form"
+      gap="2xs"
+      mt="4xs"
+      ml={36}
+      wrap="nowrap"
       onSubmit={(event) => {
         event.preventDefault()
         keep()
@@ -65,8 +69,8 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
         size="xs"
         label="Only if"
         placeholder="tries > 1"
-        className="grow"
-        classNames={{ input: 'mono' }}
+        flex={1}
+        styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
         value={condition}
         disabled={isOff}
         onChange={(event) => setCondition(event.currentTarget.value)}
@@ -83,9 +87,11 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
         onChange={setHits}
         onBlur={keep}
       />
-      <button type="submit" className="visually-hidden" tabIndex={-1}>
-        Keep
-      </button>
-    </form>
+      <VisuallyHidden>
+        <UnstyledButton type="submit" tabIndex={-1}>
+          Keep
+        </UnstyledButton>
+      </VisuallyHidden>
+    </Group>
   )
 }

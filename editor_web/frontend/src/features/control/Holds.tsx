@@ -1,9 +1,10 @@
 /** Everything that can hold the run: its breakpoints and locks, in one list. */
-import { CloseButton } from '@mantine/core'
+import { Box, CloseButton, Group, Text } from '@mantine/core'
 import { IconBookmarkOff } from '@tabler/icons-react'
 import { editBreakpoints, useBreakpoints } from '../../api/breakpoints'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
+import { TextButton } from '../../components/TextButton'
 import { breakpointWords } from '../../document/breakpoints'
 import { lookup } from '../../document/dict'
 import type { Commands } from './useCommands'
@@ -20,35 +21,53 @@ export function Holds({ commands, onShow }: { commands: Commands; onShow: (path:
     )
   }
   return (
-    <ul className="plain-list holds">
+    <ul className="plain-list">
       {breakpoints.map((each) => (
-        <li key={`${each.path}|${each.when}`}>
-          <span className="hold-dot" aria-hidden />
-          <span className="hold-text">
-            <button type="button" className="link" onClick={() => onShow(each.path)}>
-              {each.path}
-            </button>{' '}
-            <span className="quiet">{breakpointWords(each)}</span>
-          </span>
-          <CloseButton
-            size="sm"
-            aria-label={`Remove the breakpoint ${each.when} ${each.path}`}
-            onClick={() => void editBreakpoints((list) => list.filter((one) => one.path !== each.path || one.when !== each.when))}
-          />
-        </li>
+        <Hold
+          key={`${each.path}|${each.when}`}
+          path={each.path}
+          words={breakpointWords(each)}
+          color="var(--failed)"
+          onShow={onShow}
+          removal={`Remove the breakpoint ${each.when} ${each.path}`}
+          onRemove={() => void editBreakpoints((list) => list.filter((one) => one.path !== each.path || one.when !== each.when))}
+        />
       ))}
       {locks?.map((path) => (
-        <li key={path}>
-          <span className="hold-lock" aria-hidden />
-          <span className="hold-text">
-            <button type="button" className="link" onClick={() => onShow(path)}>
-              {path}
-            </button>{' '}
-            <span className="quiet">locked{lookup(reasons, path) && `: ${lookup(reasons, path)}`}</span>
-          </span>
-          <CloseButton size="sm" aria-label={`Unlock ${path}`} onClick={() => void commands.unlock(path)} />
-        </li>
+        <Hold
+          key={path}
+          path={path}
+          words={`locked${lookup(reasons, path) ? `: ${lookup(reasons, path)}` : ''}`}
+          color="var(--stopped)"
+          onShow={onShow}
+          removal={`Unlock ${path}`}
+          onRemove={() => void commands.unlock(path)}
+        />
       ))}
     </ul>
+  )
+}
+
+interface HoldProps {
+  readonly path: string
+  readonly words: string
+  readonly color: string
+  readonly onShow: (path: string) => void
+  readonly removal: string
+  readonly onRemove: () => void
+}
+
+function Hold({ path, words, color, onShow, removal, onRemove }: HoldProps) {
+  return (
+    <Group component="li" gap="2xs" py="4xs" fz="0.84rem" wrap="nowrap">
+      <Box w={10} h={10} flex="none" bdrs="xl" bg={color} style={{ forcedColorAdjust: 'none' }} aria-hidden />
+      <Text span inherit flex={1} miw={0}>
+        <TextButton onPress={() => onShow(path)}>{path}</TextButton>{' '}
+        <Text span inherit c="var(--quiet)">
+          {words}
+        </Text>
+      </Text>
+      <CloseButton size="sm" aria-label={removal} onClick={onRemove} />
+    </Group>
   )
 }

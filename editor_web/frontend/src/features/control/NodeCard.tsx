@@ -1,5 +1,5 @@
 /** What can be done with the selected node: why it waits, breakpoints, lock, forced outcomes, run again. */
-import { TextInput } from '@mantine/core'
+import { Group, Text, TextInput } from '@mantine/core'
 import { IconLock, IconLockOpen, IconPlayerPause, IconPlayerSkipForward, IconRepeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
@@ -10,6 +10,7 @@ import { GoalLine } from '../../components/GoalLine'
 import { waitingWords } from '../../document/commands'
 import { lookup } from '../../document/dict'
 import { BreakpointEditor } from './BreakpointEditor'
+import classes from './NodeCard.module.css'
 import type { Commands } from './useCommands'
 
 /** Where the key `f` goes. */
@@ -19,16 +20,20 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
   const waiting = useLive((s) => s.control?.waiting.find((each) => each.path === node.path))
   const forced = { obstacle: commands.obstacle('force'), onObstacle: () => commands.explain('force', 'Force') }
   return (
-    <section className="node-card" aria-label={`Node ${node.path}`}>
-      <p className="node-name mono">{node.path}</p>
-      <GoalLine path={node.path} />
+    <section className={classes.card} aria-label={`Node ${node.path}`}>
+      <Text size="sm" ff="monospace" fw={620} className={classes.wide} style={{ overflowWrap: 'anywhere' }}>
+        {node.path}
+      </Text>
+      <div className={classes.wide}>
+        <GoalLine path={node.path} />
+      </div>
       {waiting && (
-        <p className="node-waits">
+        <Text size="sm" px="xs" py="3xs" bg="var(--stopped-soft)" bdrs="md" className={classes.wide}>
           <strong>Waits</strong> {waitingWords(waiting)}
-        </p>
+        </Text>
       )}
       <h3>Start</h3>
-      <div className="command-row">
+      <Group gap="3xs">
         <CommandButton
           label="Run from here…"
           hint="Start a run at this node, with the data of the last run that entered it"
@@ -43,13 +48,13 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           obstacle={obstacleHere(node)}
           onPress={() => askStartHere({ behavior, path: node.path, kind: 'to' })}
         />
-      </div>
+      </Group>
       <h3>Break</h3>
       <BreakpointEditor key={node.path} path={node.path} isOff={commands.obstacle('breakpoint')} />
       <h3>Lock</h3>
       <Lock key={`${node.path} lock`} path={node.path} commands={commands} />
       <h3>Force</h3>
-      <div className="command-row" id={FORCE_ID} role="group" aria-label="Force an outcome">
+      <Group gap="3xs" id={FORCE_ID} role="group" aria-label="Force an outcome">
         {node.outcomes.map((outcome) => (
           <CommandButton
             key={outcome}
@@ -59,9 +64,9 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
             onPress={() => void commands.force(node.path, outcome)}
           />
         ))}
-      </div>
+      </Group>
       <h3>Repeat</h3>
-      <div className="command-row">
+      <Group gap="3xs">
         <CommandButton
           label="Run again"
           hint="Its active children are preempted and clean up first"
@@ -71,7 +76,7 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           onObstacle={() => commands.explain('repeat', 'Run again')}
           onPress={() => void commands.repeat(node.path)}
         />
-      </div>
+      </Group>
     </section>
   )
 }
@@ -88,19 +93,21 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
   const common = { obstacle: commands.obstacle('lock'), onObstacle: () => commands.explain('lock', 'Lock'), shortcut: 'l' }
   if (isLocked) {
     return (
-      <div className="command-row">
+      <Group gap="3xs">
         <CommandButton
           {...common}
           label="Unlock"
           icon={<IconLockOpen size={16} aria-hidden />}
           onPress={() => void commands.unlock(path)}
         />
-        <span className="quiet">{given ? `Locked: ${given}` : 'Locked without a reason given'}</span>
-      </div>
+        <Text span size="sm" c="var(--quiet)">
+          {given ? `Locked: ${given}` : 'Locked without a reason given'}
+        </Text>
+      </Group>
     )
   }
   return (
-    <div className="command-row">
+    <Group gap="3xs">
       <TextInput
         size="xs"
         aria-label="Reason of the lock"
@@ -108,7 +115,7 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
         maxLength={200}
         value={reason}
         onChange={(event) => setReason(event.currentTarget.value)}
-        className="grow"
+        flex={1}
       />
       <CommandButton
         {...common}
@@ -117,6 +124,6 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
         icon={<IconLock size={16} aria-hidden />}
         onPress={() => void commands.lock(path, reason.trim()).then(() => setReason(''))}
       />
-    </div>
+    </Group>
   )
 }

@@ -1,11 +1,10 @@
 /** Goes along the planned path that a question is about: the 3D view of this page shows the arm there. */
-import { Slider, Text } from '@mantine/core'
+import { Group, Slider, Stack, Text } from '@mantine/core'
 import { useEffect } from 'react'
 import { endScrub, scrubPath, usePathScrub } from '../../api/pathScrub'
 import { useLive } from '../../api/live'
 import { lookup } from '../../document/dict'
 import { isProposed, plansOf, proposedRequest } from '../../document/plannedPaths'
-import classes from './PathScrubber.module.css'
 
 export function PathScrubber() {
   const asked = useLive((s) => proposedRequest(s.control, s.nodes, s.robots)?.path)
@@ -16,11 +15,11 @@ export function PathScrubber() {
     .map((plan) => plan.robot)
     .filter((robot) => isProposed(lookup(robots, robot)))
   return (
-    <div className={classes.scrubber}>
+    <Stack gap="xs" px="md" py="xs" bg="var(--stopped-soft)" style={{ borderTop: '1px solid var(--line)' }}>
       {arms.map((robot) => (
         <ArmScrubber key={`${asked} ${robot}`} robot={robot} />
       ))}
-    </div>
+    </Stack>
   )
 }
 
@@ -29,10 +28,11 @@ function ArmScrubber({ robot }: { readonly robot: string }) {
   useEffect(() => endScrub, [])
   const percent = Math.round(share * 100)
   return (
-    <>
+    <Group gap="md" wrap="nowrap">
       <Text size="sm">Path of {robot}</Text>
       <Slider
-        className={classes.slider ?? ''}
+        flex={1}
+        miw={0}
         min={0}
         max={100}
         value={percent}
@@ -40,9 +40,9 @@ function ArmScrubber({ robot }: { readonly robot: string }) {
         thumbLabel={`Along the path of ${robot}`}
         onChange={(value) => scrubPath(robot, value / 100)}
       />
-      <Text size="sm" className={classes.share ?? ''}>
+      <Text size="sm" miw="3.2em" ta="end" style={{ fontVariantNumeric: 'tabular-nums' }}>
         {percent} %
       </Text>
-    </>
+    </Group>
   )
 }

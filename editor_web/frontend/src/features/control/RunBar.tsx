@@ -1,4 +1,5 @@
 /** The operator's bar: pause, steps, autonomy, operating, hot change. */
+import { Box, Group } from '@mantine/core'
 import {
   IconArrowBarDown,
   IconArrowBarUp,
@@ -17,6 +18,7 @@ import type { RunView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { LEVEL_WORDS, LEVELS, type Command } from '../../document/commands'
+import classes from './RunBar.module.css'
 import type { Commands } from './useCommands'
 
 export interface RunBarProps {
@@ -42,8 +44,8 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
     isCompact: true,
   })
   return (
-    <section className="run-bar" aria-label={named('Run control')}>
-      <div className="run-bar-row" role="toolbar" aria-label={of ? `Commands to ${of}` : 'Commands to the run'}>
+    <section className={classes.bar} aria-label={named('Run control')}>
+      <Group gap="3xs" role="toolbar" aria-label={of ? `Commands to ${of}` : 'Commands to the run'}>
         <CommandButton
           {...bar(isHeld ? 'resume' : 'pause', isHeld ? 'Resume' : 'Pause')}
           hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
@@ -81,7 +83,7 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           shortcut={key('z')}
           onPress={commands.stepBack}
         />
-        <span className="run-bar-gap" />
+        <Box w={4} visibleFrom="xs" />
         <CommitSlider
           label="Autonomy"
           min={0}
@@ -123,7 +125,7 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
             onPress={onSheet}
           />
         )}
-      </div>
+      </Group>
     </section>
   )
 }

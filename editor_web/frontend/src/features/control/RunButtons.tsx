@@ -1,4 +1,5 @@
 /** The few commands to a run that stands among others: pause or resume, stop, operate. */
+import { Group, Stack, Text } from '@mantine/core'
 import { IconHeadset, IconPlayerPause, IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
@@ -12,8 +13,8 @@ export function RunButtons({ run, commands, of }: { run: RunView; commands: Comm
   const isMine = useOperated() === run.id
   const isHeld = control?.paused === true && !control.stepping
   return (
-    <footer className="run-buttons">
-      <div className="command-row" role="group" aria-label={`Commands to ${of}`}>
+    <Stack component="footer" gap="2xs" mt="auto">
+      <Group gap="3xs" role="group" aria-label={`Commands to ${of}`}>
         <CommandButton
           label={isHeld ? 'Resume' : 'Pause'}
           hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
@@ -33,9 +34,13 @@ export function RunButtons({ run, commands, of }: { run: RunView; commands: Comm
           onPress={commands.toggleOperating}
         />
         <StopRun commands={commands} />
-      </div>
-      {control && <p className={control.operator === 'lost' ? 'is-lost' : 'quiet'}>{operatorWords(control, isMine)}</p>}
-    </footer>
+      </Group>
+      {control && (
+        <Text size="sm" {...(control.operator === 'lost' ? { c: 'var(--stopped)', fw: 650 } : { c: 'var(--quiet)' })}>
+          {operatorWords(control, isMine)}
+        </Text>
+      )}
+    </Stack>
   )
 }
 

@@ -1,12 +1,13 @@
 /** The state of the run, why it is so, and what it asks: one row whose height no text changes. */
-import { Button } from '@mantine/core'
+import { Button, Stack, Text } from '@mantine/core'
 import { IconZoomExclamation } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
 import type { ControlView, GateWait, GraphNode, RunView } from '../../api/types'
-import { Elapsed } from '../../components/Elapsed'
+import { Elapsed, TimeText } from '../../components/Elapsed'
 import { RunBadge } from '../../components/StatusBadge'
+import { TextButton } from '../../components/TextButton'
 import { LEVEL_WORDS, operatorWords, waitingWords } from '../../document/commands'
 import { isActive, isFailed, requestsOf, runStateOf } from '../../document/runState'
 import { duration } from '../../document/time'
@@ -40,15 +41,15 @@ export function StatusRow({ run, root, commands, onShow, onFailure, notices, of 
           <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'}>
             <RunBadge run={run} control={control} />
           </span>
-          {run && (isActive(run) ? <Elapsed sinceS={0} /> : <span className="elapsed">{duration(run.duration_s)}</span>)}
+          {run && (isActive(run) ? <Elapsed sinceS={0} /> : <TimeText>{duration(run.duration_s)}</TimeText>)}
         </div>
-        <div className={classes.reason}>
+        <Stack gap={2} miw={0}>
           {notices}
           <Reason run={run} control={control} onShow={onShow} />
           {control && run && <Operator run={run} control={control} />}
-        </div>
-        <div className={asks ? `${classes.question} ${classes.asks}` : classes.question}>
-          <Requests root={root} commands={commands} onShow={onShow} of={of} />
+        </Stack>
+        <div className={classes.question} data-asks={asks || undefined}>
+          <Requests root={root} commands={commands} onShow={onShow} of={of} isRow />
           {hasFailed && onFailure && (
             <Button
               variant="light"
@@ -79,26 +80,24 @@ function Reason({ run, control, onShow }: ReasonProps) {
   const waiting = control?.waiting.filter((each) => !each.reasons.includes('autonomy')) ?? []
   const words = waiting.map((each) => `${each.path} ${waitingWords(each)}`)
   return (
-    <div className={look === 'failed' ? `${classes.line} ${classes.failed}` : classes.line} title={[reason, ...words].join('\n')}>
-      {run ? reason : <span className="quiet">Set the parameters and press Start.</span>}
+    <Text component="div" inherit truncate c={look === 'failed' ? 'var(--failed)' : 'inherit'} title={[reason, ...words].join('\n')}>
+      {run ? reason : <Quiet>Set the parameters and press Start.</Quiet>}
+      {waiting.length > 0 && ' '}
       {waiting.length > 0 && (
-        <ul className={`plain-list ${classes.waits}`} aria-label="Nodes that wait">
+        <ul className={classes.waits} aria-label="Nodes that wait">
           {waiting.map((each) => (
             <Waiting key={`${each.path}|${each.point}`} wait={each} onShow={onShow} />
           ))}
         </ul>
       )}
-    </div>
+    </Text>
   )
 }
 
 function Waiting({ wait, onShow }: { readonly wait: GateWait; readonly onShow: (path: string) => void }) {
   return (
     <li>
-      <button type="button" className="link" onClick={() => onShow(wait.path)}>
-        {wait.path}
-      </button>{' '}
-      {waitingWords(wait)}
+      <TextButton onPress={() => onShow(wait.path)}>{wait.path}</TextButton> {waitingWords(wait)}
     </li>
   )
 }
@@ -109,8 +108,23 @@ function Operator({ run, control }: { readonly run: RunView; readonly control: C
   const autonomy = `Autonomy ${control.autonomy}: ${LEVEL_WORDS[control.autonomy]}.`
   const operator = operatorWords(control, isMine)
   return (
-    <div className={classes.line} title={`${operator}\n${autonomy}`}>
-      <span className={control.operator === 'lost' ? classes.lost : 'quiet'}>{operator}</span> <span className="quiet">{autonomy}</span>
-    </div>
+    <Text component="div" inherit truncate title={`${operator}\n${autonomy}`}>
+      {control.operator === 'lost' ? (
+        <Text span inherit c="var(--stopped)" fw={650}>
+          {operator}
+        </Text>
+      ) : (
+        <Quiet>{operator}</Quiet>
+      )}{' '}
+      <Quiet>{autonomy}</Quiet>
+    </Text>
+  )
+}
+
+function Quiet({ children }: { readonly children: string }) {
+  return (
+    <Text span inherit c="var(--quiet)">
+      {children}
+    </Text>
   )
 }

@@ -1,8 +1,10 @@
 /** The problems of a document, with place and advice. */
+import { Divider, Group, Text, VisuallyHidden } from '@mantine/core'
 import { IconCircleCheck } from '@tabler/icons-react'
 import type { FindingView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
+import { TextButton } from '../../components/TextButton'
 import { statusOf } from '../../document/runState'
 
 export interface FindingListProps {
@@ -20,25 +22,26 @@ export function FindingList({ document, findings, onSelect }: FindingListProps) 
     )
   }
   return (
-    <ul className="plain-list findings">
+    <ul className="plain-list">
       {findings.map((finding, index) => (
-        <li key={index} className="finding">
-          <StatusIcon status={statusOf(finding.severity)} size={16} />
-          <div>
+        <li key={index} data-finding={finding.code}>
+          {index > 0 && <Divider />}
+          <Group gap="xs" py="2xs" wrap="nowrap" align="flex-start">
+            <StatusIcon status={statusOf(finding.severity)} size={16} />
             <div>
-              <span className="visually-hidden">{finding.severity}: </span>
+              <VisuallyHidden component="span">{finding.severity}: </VisuallyHidden>
               {finding.message}
-            </div>
-            {finding.hint && <div className="quiet">{finding.hint}</div>}
-            <div className="quiet mono finding-place">
-              {document.split('/').pop()}:{finding.line}:{finding.column} · {finding.code}
-              {finding.path && (
-                <button type="button" className="link" onClick={() => onSelect(finding.path)}>
-                  {finding.path}
-                </button>
+              {finding.hint && (
+                <Text size="sm" c="var(--quiet)">
+                  {finding.hint}
+                </Text>
               )}
+              <Group gap="2xs" mt={3} fz="xs" ff="monospace" c="var(--quiet)">
+                {document.split('/').pop()}:{finding.line}:{finding.column} · {finding.code}
+                {finding.path && <TextButton onPress={() => onSelect(finding.path)}>{finding.path}</TextButton>}
+              </Group>
             </div>
-          </div>
+          </Group>
         </li>
       ))}
     </ul>

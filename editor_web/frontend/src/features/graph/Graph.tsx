@@ -1,7 +1,7 @@
 /** The live graph of a behavior: laid out once, lit by the run. */
 import { lookup, type Dict } from '../../document/dict'
 import '@xyflow/react/dist/style.css'
-import { ActionIcon, Group, Loader, Tooltip } from '@mantine/core'
+import { ActionIcon, Box, Group, Loader, Tooltip } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconArrowsMaximize, IconArrowsRightDown, IconFocus2, IconMinus, IconPlus } from '@tabler/icons-react'
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
@@ -14,6 +14,7 @@ import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
 import { pointOf } from '../../components/menuPoint'
 import type { Point } from '../../document/geometry'
+import classes from './graph.module.css'
 import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
@@ -67,23 +68,22 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
     <Panel
       title="Graph"
       of={of}
-      className="graph-panel"
       tools={
         <>
           {breadcrumb}
-          <span className="spacer" />
+          <Box flex={1} />
           <CanvasTools onTurn={() => setFlow(turned)} follows={follows} onFollow={() => setFollows(!follows)} />
         </>
       }
     >
-      <div className="graph" ref={ref}>
+      <div className={classes.graph} data-graph ref={ref}>
         <ArrowHeads />
         {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
         {!laidOut && !problem && (
-          <div className="graph-wait" role="status">
+          <Group justify="center" gap="xs" h="100%" c="var(--quiet)" role="status">
             <Loader size="sm" aria-hidden />
             <span>Drawing…</span>
-          </div>
+          </Group>
         )}
         {laidOut && (
           <Drawn

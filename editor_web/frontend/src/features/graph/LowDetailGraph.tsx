@@ -5,6 +5,7 @@ import { useNodeLive } from '../../api/liveParts'
 import type { Course } from '../../document/layout'
 import { statusOf } from '../../document/runState'
 import type { CanvasNode } from './elements'
+import classes from './graph.module.css'
 
 /** More nodes than this are drawn in full only where they are seen. */
 export const LARGE_GRAPH_NODES = 300
@@ -24,7 +25,7 @@ export function withLowDetail<P extends NodeProps<CanvasNode>>(Near: ComponentTy
 
 function PlainStep({ id, type, selected }: { id: string; type: string; selected: boolean }) {
   const status = statusOf(useNodeLive(id)?.status ?? 'idle')
-  return <div className={`plain-step is-${type} is-${status}${selected ? ' is-selected' : ''}`} data-status={status} />
+  return <div className={classes.far} data-node={type} data-status={status} data-selected={selected || undefined} />
 }
 
 /** Every arrow in one path. */
@@ -32,7 +33,7 @@ export const LowDetailEdges = memo(function FarCourses({ courses }: { courses: r
   const path = useMemo(() => courses.map(lineOf).join(''), [courses])
   return (
     <ViewportPortal>
-      <svg className="far-courses" aria-hidden>
+      <svg className={classes.farCourses} aria-hidden>
         <path d={path} />
       </svg>
     </ViewportPortal>

@@ -1,8 +1,10 @@
 /** What holds a node: the dots of its breakpoints, its lock, and the words of what it waits for. */
+import { UnstyledButton } from '@mantine/core'
 import { IconLock } from '@tabler/icons-react'
 import { toggleBreakpoint, useBreakpointsAt } from '../../api/breakpoints'
 import { useHolds } from '../../api/liveParts'
 import { useIsPage } from '../../api/liveStore'
+import classes from './step.module.css'
 
 export function Marks({ path }: { path: string }) {
   const points = useBreakpointsAt(path)
@@ -10,11 +12,11 @@ export function Marks({ path }: { path: string }) {
   const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
   return (
     <>
-      {waits && <span className="waiting-ring" />}
+      {waits && <span className={classes.waits} data-mark="waits" />}
       <Dot path={path} when="before" isSet={points.includes('before')} />
       {points.includes('after') && <Dot path={path} when="after" isSet />}
       {isLocked && (
-        <span className="lock-mark" title="Locked: its outcome is held">
+        <span className={classes.lock} data-mark="lock" title="Locked: its outcome is held">
           <IconLock size={13} aria-hidden />
         </span>
       )}
@@ -25,12 +27,13 @@ export function Marks({ path }: { path: string }) {
 /** For the mouse; the keyboard has the key `b` and the form of the selected node. Set only on the page of the run. */
 function Dot({ path, when, isSet }: { path: string; when: 'before' | 'after'; isSet: boolean }) {
   const isPage = useIsPage()
-  if (!isPage) return isSet && <span className={`break-dot is-${when} is-set`} title={`Pauses ${when} this node`} />
+  if (!isPage) return isSet && <span className={classes.dot} data-when={when} data-set title={`Pauses ${when} this node`} />
   return (
-    <button
-      type="button"
+    <UnstyledButton
       tabIndex={-1}
-      className={`break-dot is-${when}${isSet ? ' is-set' : ''}`}
+      className={classes.dot}
+      data-when={when}
+      data-set={isSet || undefined}
       aria-label={`Breakpoint ${when} ${path}`}
       aria-pressed={isSet}
       title={isSet ? `Pauses ${when} this node; click to let it pass` : 'Click to pause before this node'}
@@ -52,5 +55,5 @@ export function HeldText({ path }: { path: string }) {
     const reasons = waiting.reasons.map((reason) => WORDS[reason] ?? 'held').join(', ')
     return waiting.outcome ? `${reasons}: ${waiting.outcome}` : reasons
   })
-  return words ? <span className="held-text">{words}</span> : null
+  return words ? <span className={classes.held}>{words}</span> : null
 }

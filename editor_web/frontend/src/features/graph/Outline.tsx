@@ -1,4 +1,5 @@
 /** The behavior as a tree of text: what the graph shows, for keyboard and screen reader. */
+import { Text, VisuallyHidden } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
 import { useNodeLive } from '../../api/liveParts'
@@ -6,6 +7,7 @@ import type { GraphNode } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { kindLabel } from '../../document/tree'
+import classes from './Outline.module.css'
 
 export interface OutlineProps {
   readonly root: GraphNode
@@ -66,7 +68,13 @@ export function Outline({ root, selected, onSelect }: OutlineProps) {
   }
 
   return (
-    <ul className="outline" role="tree" aria-label="Outline of the behavior" ref={tree}>
+    <ul
+      className="plain-list"
+      style={{ flex: 1, minHeight: 0, padding: '8px 6px', overflow: 'auto' }}
+      role="tree"
+      aria-label="Outline of the behavior"
+      ref={tree}
+    >
       {rows.map((row, index) => (
         <OutlineRow
           key={row.node.path}
@@ -106,7 +114,7 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
   return (
     <li
       role="treeitem"
-      className={`outline-row${isSelected ? ' is-selected' : ''}`}
+      className={classes.row}
       style={{ paddingInlineStart: 8 + (level - 1) * 16 }}
       data-path={node.path}
       aria-level={level}
@@ -117,7 +125,7 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
       onKeyDown={onKeyDown}
     >
       <span
-        className="outline-chevron"
+        style={{ display: 'inline-flex', flex: 'none', width: 14, color: 'var(--quiet)' }}
         aria-hidden
         onClick={(event) => {
           event.stopPropagation()
@@ -127,10 +135,18 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
         {hasChildren && <Chevron size={14} />}
       </span>
       <StatusIcon status={status} size={14} />
-      <span className="outline-name">{node.name}</span>
-      <span className="quiet outline-title">{node.title || kindLabel(node.kind)}</span>
-      <span className="visually-hidden">{words}</span>
-      {live && live.visits > 1 && <span className="visits">×{live.visits}</span>}
+      <Text span inherit fw={550}>
+        {node.name}
+      </Text>
+      <Text span truncate fz="0.78rem" c="var(--quiet)">
+        {node.title || kindLabel(node.kind)}
+      </Text>
+      <VisuallyHidden component="span">{words}</VisuallyHidden>
+      {live && live.visits > 1 && (
+        <Text span ml="auto" fz="xs" c="var(--quiet)">
+          ×{live.visits}
+        </Text>
+      )}
     </li>
   )
 }

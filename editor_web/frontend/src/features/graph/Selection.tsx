@@ -1,4 +1,5 @@
 /** What is known of the selected node: kind, state, outcomes, last visit, why it failed. */
+import { Box, Group, Text } from '@mantine/core'
 import { lookup } from '../../document/dict'
 import { useLive } from '../../api/live'
 import type { GraphNode } from '../../api/types'
@@ -7,22 +8,35 @@ import { StatusBadge } from '../../components/StatusBadge'
 import { nodeWords, statusOf } from '../../document/runState'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
+import classes from './Selection.module.css'
 
 export function Selection({ node }: { node: GraphNode }) {
   const live = useLive((s) => lookup(s.nodes, node.path))
   return (
-    <section className="selection" aria-label={`Selected: ${node.name}`}>
-      <div className="selection-head">
+    <Box
+      component="section"
+      flex="none"
+      px={14}
+      py="xs"
+      bg="var(--surface)"
+      style={{ borderTop: '1px solid var(--line)' }}
+      aria-label={`Selected: ${node.name}`}
+    >
+      <Group gap="xs">
         <strong>{node.name}</strong>
         {live && <StatusBadge look={statusOf(live.status)} words={nodeWords(live.status, live.status === 'active' ? '' : live.outcome)} />}
-      </div>
-      <dl className="facts">
+      </Group>
+      <dl className={classes.facts}>
         <dt>Kind</dt>
         <dd>{kindLabel(node.kind)}</dd>
         {node.title && (
           <>
             <dt>Runs</dt>
-            <dd className="mono">{node.title}</dd>
+            <dd>
+              <Text span inherit ff="monospace">
+                {node.title}
+              </Text>
+            </dd>
           </>
         )}
         <dt>Outcomes</dt>
@@ -44,10 +58,10 @@ export function Selection({ node }: { node: GraphNode }) {
         {live?.cause && (
           <>
             <dt>Cause</dt>
-            <dd className="is-failed">{live.cause}</dd>
+            <dd data-status="failed">{live.cause}</dd>
           </>
         )}
       </dl>
-    </section>
+    </Box>
   )
 }

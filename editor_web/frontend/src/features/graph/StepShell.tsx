@@ -13,6 +13,7 @@ import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 import type { OutcomeNode, StepNode } from './elements'
 import { HeldText, Marks } from './Marks'
+import classes from './step.module.css'
 
 const KIND_ICONS: Record<string, typeof IconBox> = {
   machine: IconSitemap,
@@ -25,23 +26,26 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
   const status = statusOf(live?.status ?? 'idle')
   return (
     <div
-      className={`step leaf is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`}
+      className={`${classes.step} ${classes.leaf}`}
+      data-node="leaf"
       data-status={status}
+      data-disabled={data.isPassedOver || undefined}
+      data-selected={selected || undefined}
     >
       <Ports />
-      {data.isInitial && <span className="initial-mark" title="The first state" />}
+      {data.isInitial && <span className={classes.initial} title="The first state" />}
       <Marks path={id} />
       {/* A new key starts the animation again, so that a visit shorter than a frame is seen. */}
-      <span key={live?.visits ?? 0} className={live && live.visits > 0 ? 'blink' : undefined} />
-      <div className="leaf-head">
+      <span key={live?.visits ?? 0} className={live && live.visits > 0 ? classes.blink : undefined} />
+      <div className={classes.head}>
         <StatusIcon status={status} />
-        <span className="step-name">{data.node.name}</span>
-        {live && live.visits > 1 && <span className="visits">×{live.visits}</span>}
+        <span className={classes.name}>{data.node.name}</span>
+        {live && live.visits > 1 && <span className={classes.visits}>×{live.visits}</span>}
       </div>
-      <div className="step-title">
+      <div className={classes.title}>
         {data.node.disabled === false ? data.node.title || kindLabel(data.node.kind) : disabledText(data.node.disabled)}
       </div>
-      <div className="step-foot">
+      <div className={classes.live}>
         <LiveText live={live} />
         <HeldText path={id} />
         <GoalLine path={id} />
@@ -58,26 +62,30 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
   const Icon = KIND_ICONS[node.kind] ?? IconBox
   return (
     <div
-      className={`step container kind-${node.kind} is-${status}${data.isPassedOver ? ' is-disabled' : ''}${selected ? ' is-selected' : ''}`}
+      className={`${classes.step} ${classes.container}`}
+      data-node="container"
+      data-kind={node.kind}
       data-status={status}
+      data-disabled={data.isPassedOver || undefined}
+      data-selected={selected || undefined}
     >
       <Ports />
-      {data.isInitial && <span className="initial-mark" title="The first state" />}
+      {data.isInitial && <span className={classes.initial} title="The first state" />}
       <Marks path={id} />
-      <div className="container-head">
-        <Icon size={16} className="kind-icon" aria-hidden />
-        <span className="step-name">{node.name}</span>
-        <span className="kind-name">{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
-        <span className="spacer" />
+      <div className={classes.head}>
+        <Icon size={16} color="var(--quiet)" style={{ flex: 'none' }} aria-hidden />
+        <span className={classes.name}>{node.name}</span>
+        <span className={classes.kind}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
+        <span style={{ flex: 1 }} />
         <HeldText path={id} />
         {status !== 'idle' && <StatusIcon status={status} size={14} />}
-        <span className="container-live">
+        <span className={classes.live}>
           <LiveText live={live} />
         </span>
       </div>
-      <div className="container-foot">
+      <div style={{ paddingInline: 14 }}>
         {node.conditions.length > 0 && (
-          <div className="conditions" title={node.conditions.join('\n')}>
+          <div className={classes.conditions} title={node.conditions.join('\n')}>
             {node.conditions.join(' · ')}
           </div>
         )}
@@ -92,11 +100,12 @@ function Exits({ data }: { data: StepNode['data'] }) {
   const lastTransition = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.last_transition : undefined))
   if (data.exits.length === 0) return null
   return (
-    <div className="exits">
+    <div className={classes.exits}>
       {data.exits.map(({ outcome, target }) => (
         <span
           key={outcome}
-          className={`exit${lastTransition === `${data.node.name}|${outcome}` ? ' is-taken' : ''}`}
+          data-exit={outcome}
+          data-taken={lastTransition === `${data.node.name}|${outcome}` || undefined}
           title={`${outcome} ends the machine with ${target}`}
         >
           <IconLogout size={11} aria-hidden />
@@ -108,15 +117,15 @@ function Exits({ data }: { data: StepNode['data'] }) {
 }
 
 function LiveText({ live }: { live: NodeLive | undefined }) {
-  if (!live || live.status === 'idle') return <span className="quiet">{live && live.visits > 0 ? 'waiting again' : ''}</span>
-  if (live.status === 'skipped') return <span className="outcome-text">skipped</span>
+  if (!live || live.status === 'idle') return <span className={classes.quiet}>{live && live.visits > 0 ? 'waiting again' : ''}</span>
+  if (live.status === 'skipped') return <span className={classes.outcomeText}>skipped</span>
   if (live.status === 'active') {
     return <Elapsed sinceS={live.entered_s} />
   }
   return (
     <>
-      <span className="outcome-text">{live.status === 'stopped' ? 'stopped' : live.outcome}</span>
-      <span className="quiet">{duration(live.duration_s)}</span>
+      <span className={classes.outcomeText}>{live.status === 'stopped' ? 'stopped' : live.outcome}</span>
+      <span className={classes.quiet}>{duration(live.duration_s)}</span>
     </>
   )
 }
@@ -126,7 +135,7 @@ export const OutcomeNodeShell = memo(function OutcomeNodeShell({ data }: NodePro
     machine !== undefined && machine.status !== 'active' && machine.outcome === data.outcome ? machine.status : 'idle',
   )
   return (
-    <div className={`outcome is-${statusOf(reached)}`}>
+    <div className={classes.outcome} data-node="outcome" data-status={statusOf(reached)}>
       <Ports />
       {data.outcome}
     </div>
@@ -137,8 +146,8 @@ export const OutcomeNodeShell = memo(function OutcomeNodeShell({ data }: NodePro
 function Ports() {
   return (
     <>
-      <Handle type="target" position={Position.Left} className="port" isConnectable={false} />
-      <Handle type="source" position={Position.Right} className="port" isConnectable={false} />
+      <Handle type="target" position={Position.Left} style={{ visibility: 'hidden' }} isConnectable={false} />
+      <Handle type="source" position={Position.Right} style={{ visibility: 'hidden' }} isConnectable={false} />
     </>
   )
 }

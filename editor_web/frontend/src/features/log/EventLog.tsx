@@ -1,5 +1,5 @@
 /** What happened in the watched run, newest last, with the cause chains of failures to unfold. */
-import { CloseButton, SegmentedControl, Switch, TextInput } from '@mantine/core'
+import { Box, Button, CloseButton, Group, SegmentedControl, Switch, Text, TextInput } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconChevronDown, IconChevronRight, IconListDetails, IconSearch } from '@tabler/icons-react'
 import { memo, useEffect, useMemo, useRef, useState } from 'react'
@@ -7,6 +7,7 @@ import { useLive } from '../../api/live'
 import type { LogLine } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
+import classes from './EventLog.module.css'
 import { passing, type Level } from './filter'
 
 /** Lines in the DOM; the others are counted. */
@@ -30,7 +31,7 @@ export function EventLog({ of }: { of?: string }) {
   const { ref, width } = useElementSize()
 
   const tools = (
-    <div className="log-tools" ref={ref}>
+    <Group ref={ref} flex={1} miw={0} gap="xs" justify="flex-end" wrap="nowrap">
       <TextInput
         size="xs"
         aria-label="Find in the log"
@@ -39,7 +40,8 @@ export function EventLog({ of }: { of?: string }) {
         rightSection={text && <CloseButton size="xs" aria-label="Clear" onClick={() => setText('')} />}
         value={text}
         onChange={(event) => setText(event.currentTarget.value)}
-        className="log-find"
+        flex="0 1 180px"
+        miw={70}
       />
       <SegmentedControl
         size="xs"
@@ -55,11 +57,11 @@ export function EventLog({ of }: { of?: string }) {
         checked={follows}
         onChange={(event) => setFollows(event.currentTarget.checked)}
       />
-    </div>
+    </Group>
   )
 
   return (
-    <Panel title="Event log" of={of} tools={tools} className="log-panel">
+    <Panel title="Event log" of={of} tools={tools} className={classes.panel ?? ''}>
       <Lines lines={shown} follows={follows} onLeave={() => setFollows(false)} hidden={hidden} isFiltered={log.length > 0} />
     </Panel>
   )
@@ -83,7 +85,7 @@ function Lines({ lines, hidden, isFiltered, follows, onLeave }: LinesProps) {
 
   return (
     <div
-      className="log"
+      className={classes.log}
       role="log"
       aria-label="Events"
       aria-live="off"
@@ -99,7 +101,11 @@ function Lines({ lines, hidden, isFiltered, follows, onLeave }: LinesProps) {
           {isFiltered ? 'Show all levels, or clear the search.' : 'Start the behavior; its events appear here.'}
         </Empty>
       )}
-      {hidden > 0 && <p className="log-hidden">{hidden} earlier lines are in the journal</p>}
+      {hidden > 0 && (
+        <Text inherit px={14} py={2} c="var(--quiet)">
+          {hidden} earlier lines are in the journal
+        </Text>
+      )}
       {lines.map((line) => (
         <Line key={line.seq} line={line} />
       ))}
@@ -117,27 +123,37 @@ const Line = memo(function Line({ line }: { line: LogLine }) {
   const hasCause = line.causes.length > 0
   const Chevron = open ? IconChevronDown : IconChevronRight
   return (
-    <div className={`log-line level-${line.level}`}>
-      <span className="log-time">{line.time_s.toFixed(3)}</span>
-      <span className="log-level">{line.level}</span>
-      <span className="log-path">{line.path || 'run'}</span>
-      <span className="log-text">
+    <div className={classes.line} data-level={line.level}>
+      <span className={classes.time}>{line.time_s.toFixed(3)}</span>
+      <span className={classes.level}>{line.level}</span>
+      <span className={classes.path}>{line.path || 'run'}</span>
+      <span className={classes.text}>
         {line.text}
         {hasCause && (
-          <button type="button" className="cause-toggle" aria-expanded={open} onClick={() => setOpen(!open)}>
-            <Chevron size={13} aria-hidden />
+          <Button
+            variant="default"
+            size="compact-xs"
+            h="1.25rem"
+            ml="2xs"
+            leftSection={<Chevron size={13} aria-hidden />}
+            styles={{ section: { marginInlineEnd: 2 } }}
+            aria-expanded={open}
+            onClick={() => setOpen(!open)}
+          >
             {line.causes.length === 1 ? 'cause' : `${line.causes.length} causes`}
-          </button>
+          </Button>
         )}
         {open && (
-          <ol className="causes" ref={intoView}>
+          <Box component="ol" my="4xs" pl={18} c="var(--text)" aria-label="Causes" ref={intoView}>
             {line.causes.map((cause, index) => (
               <li key={index}>
-                <span>{cause.message}</span>
-                <span className="quiet mono">{[cause.kind, cause.where].filter(Boolean).join(' · ')}</span>
+                <div>{cause.message}</div>
+                <Text inherit ff="monospace" c="var(--quiet)">
+                  {[cause.kind, cause.where].filter(Boolean).join(' · ')}
+                </Text>
               </li>
             ))}
-          </ol>
+          </Box>
         )}
       </span>
     </div>

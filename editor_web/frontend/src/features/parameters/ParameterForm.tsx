@@ -1,6 +1,6 @@
 /** The form that sets a behavior's parameters for one run. */
 import { lookup } from '../../document/dict'
-import { Alert, Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
+import { Alert, Button, Code, Collapse, NumberInput, Stack, Text, Textarea } from '@mantine/core'
 import { IconAlertTriangle, IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { BehaviorView } from '../../api/types'
@@ -11,6 +11,8 @@ import { useStart } from './useStart'
 
 /** The id by which buttons elsewhere on the page submit the form. */
 export const FORM_ID = 'parameters'
+
+const MONOSPACE = { input: { fontFamily: 'var(--mantine-font-family-monospace)' } }
 
 export interface ParameterFormProps {
   readonly behavior: BehaviorView
@@ -31,7 +33,6 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
   return (
     <form
       id={FORM_ID}
-      className="parameter-form"
       noValidate
       aria-label="Parameters"
       onSubmit={(event) => {
@@ -39,66 +40,74 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
         if (obstacle === undefined) void submit()
       }}
     >
-      {behavior.fit.obstacle && (
-        <Alert color="yellow" icon={<IconAlertTriangle size={16} aria-hidden />} title="It cannot be started here">
-          {behavior.fit.obstacle}
-        </Alert>
-      )}
-      {fields.length === 0 && <p className="quiet">This behavior has no parameters.</p>}
-      {fields.map((field) => (
-        <ParameterField
-          key={field.name}
-          field={field}
-          value={lookup(values, field.name)}
-          problem={lookup(problems, field.name)}
-          onChange={(value) => set(field.name, value)}
-        />
-      ))}
-      <Disclosure title="Operation">
-        <StartOptions supervision={start.supervision} onChange={start.setSupervision} hasBreakpoints={start.hasBreakpoints} />
-      </Disclosure>
-      <Disclosure title="Initial userdata">
-        <Textarea
-          size="sm"
-          label="Userdata"
-          description={'Values to begin with in the place of those of the document, as JSON: {"count": 3}'}
-          classNames={{ input: 'mono' }}
-          autosize
-          minRows={2}
-          value={start.inputs}
-          error={start.inputsProblem}
-          onChange={(event) => start.setInputs(event.currentTarget.value)}
-        />
-      </Disclosure>
-      <Disclosure title="Repeatability">
-        <NumberInput
-          size="sm"
-          label="Seed"
-          description="The same seed draws the same random numbers; empty draws a new one"
-          value={seed}
-          onChange={setSeed}
-          min={0}
-          max={2 ** 31 - 1}
-          allowDecimal={false}
-        />
-      </Disclosure>
-      {run !== undefined && (
-        <div>
-          <CommandButton
-            label="Same as the shown run"
-            hint="Fill in the parameters, userdata and seed that the shown run was started with"
-            icon={<IconRepeat size={15} aria-hidden />}
-            onPress={() => void repeat(run)}
+      <Stack gap={14} maw="34rem">
+        {behavior.fit.obstacle && (
+          <Alert color="yellow" icon={<IconAlertTriangle size={16} aria-hidden />} title="It cannot be started here">
+            {behavior.fit.obstacle}
+          </Alert>
+        )}
+        {fields.length === 0 && (
+          <Text size="sm" c="var(--quiet)">
+            This behavior has no parameters.
+          </Text>
+        )}
+        {fields.map((field) => (
+          <ParameterField
+            key={field.name}
+            field={field}
+            value={lookup(values, field.name)}
+            problem={lookup(problems, field.name)}
+            onChange={(value) => set(field.name, value)}
           />
-        </div>
-      )}
-      <p className="quiet start-place">{place}</p>
-      <Disclosure title="Another cell or clock">
-        <p className="quiet start-place">
-          The cell is chosen when the server starts: <code>flexcell serve --cell …</code>. It goes by the real clock; in virtual time, as
-          fast as can be computed, a behavior is run on the terminal: <code>{terminal}</code>
-        </p>
-      </Disclosure>
+        ))}
+        <Disclosure title="Operation">
+          <StartOptions supervision={start.supervision} onChange={start.setSupervision} hasBreakpoints={start.hasBreakpoints} />
+        </Disclosure>
+        <Disclosure title="Initial userdata">
+          <Textarea
+            size="sm"
+            label="Userdata"
+            description={'Values to begin with in the place of those of the document, as JSON: {"count": 3}'}
+            styles={MONOSPACE}
+            autosize
+            minRows={2}
+            value={start.inputs}
+            error={start.inputsProblem}
+            onChange={(event) => start.setInputs(event.currentTarget.value)}
+          />
+        </Disclosure>
+        <Disclosure title="Repeatability">
+          <NumberInput
+            size="sm"
+            label="Seed"
+            description="The same seed draws the same random numbers; empty draws a new one"
+            value={seed}
+            onChange={setSeed}
+            min={0}
+            max={2 ** 31 - 1}
+            allowDecimal={false}
+          />
+        </Disclosure>
+        {run !== undefined && (
+          <div>
+            <CommandButton
+              label="Same as the shown run"
+              hint="Fill in the parameters, userdata and seed that the shown run was started with"
+              icon={<IconRepeat size={15} aria-hidden />}
+              onPress={() => void repeat(run)}
+            />
+          </div>
+        )}
+        <Text size="sm" c="var(--quiet)">
+          {place}
+        </Text>
+        <Disclosure title="Another cell or clock">
+          <Text size="sm" c="var(--quiet)">
+            The cell is chosen when the server starts: <Code>flexcell serve --cell …</Code>. It goes by the real clock; in virtual time, as
+            fast as can be computed, a behavior is run on the terminal: <Code>{terminal}</Code>
+          </Text>
+        </Disclosure>
+      </Stack>
     </form>
   )
 }
@@ -108,11 +117,24 @@ function Disclosure({ title, children }: { title: string; children: ReactNode })
   const Chevron = isOpen ? IconChevronDown : IconChevronRight
   return (
     <div>
-      <UnstyledButton className="disclosure" aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
-        <Chevron size={14} aria-hidden /> {title}
-      </UnstyledButton>
+      <Button
+        variant="subtle"
+        color="gray"
+        size="compact-sm"
+        px={0}
+        fw={400}
+        c="var(--quiet)"
+        leftSection={<Chevron size={14} aria-hidden />}
+        styles={{ section: { marginInlineEnd: 4 } }}
+        aria-expanded={isOpen}
+        onClick={() => setOpen(!isOpen)}
+      >
+        {title}
+      </Button>
       <Collapse expanded={isOpen}>
-        <div className="disclosed">{children}</div>
+        <Stack gap="sm" mt="2xs">
+          {children}
+        </Stack>
       </Collapse>
     </div>
   )

@@ -88,7 +88,6 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
   const reason = here.kind === 'from' && found.obstacle ? found.obstacle : obstacle
   return (
     <form
-      className="parameter-form"
       aria-label="Start here"
       noValidate
       onSubmit={(event) => {
@@ -96,34 +95,36 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
         if (reason === undefined) void submit()
       }}
     >
-      <Text size="sm">{wordsFor(here, found)}</Text>
-      {reason && <Alert color="red">{reason}</Alert>}
-      {fields.map((field) => (
-        <ParameterField
-          key={field.name}
-          field={field}
-          value={lookup(values, field.name)}
-          problem={lookup(problems, field.name)}
-          onChange={(value) => set(field.name, value)}
+      <Stack gap={14} maw="34rem">
+        <Text size="sm">{wordsFor(here, found)}</Text>
+        {reason && <Alert color="red">{reason}</Alert>}
+        {fields.map((field) => (
+          <ParameterField
+            key={field.name}
+            field={field}
+            value={lookup(values, field.name)}
+            problem={lookup(problems, field.name)}
+            onChange={(value) => set(field.name, value)}
+          />
+        ))}
+        <Textarea
+          size="sm"
+          label="Userdata"
+          description="As a JSON object; keys that are left out keep their values"
+          styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
+          autosize
+          minRows={2}
+          maxRows={12}
+          value={inputs}
+          error={inputsProblem}
+          onChange={(event) => setInputs(event.currentTarget.value)}
         />
-      ))}
-      <Textarea
-        size="sm"
-        label="Userdata"
-        description="As a JSON object; keys that are left out keep their values"
-        classNames={{ input: 'mono' }}
-        autosize
-        minRows={2}
-        maxRows={12}
-        value={inputs}
-        error={inputsProblem}
-        onChange={(event) => setInputs(event.currentTarget.value)}
-      />
-      <Group justify="flex-end">
-        <Button type="submit" disabled={reason !== undefined}>
-          Start
-        </Button>
-      </Group>
+        <Group justify="flex-end">
+          <Button type="submit" disabled={reason !== undefined}>
+            Start
+          </Button>
+        </Group>
+      </Stack>
     </form>
   )
 }

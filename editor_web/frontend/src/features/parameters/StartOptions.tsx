@@ -1,5 +1,5 @@
 /** How the run is watched over: autonomy, operator, where it pauses, what happens when the operator is lost. */
-import { NumberInput, Select, Switch } from '@mantine/core'
+import { Group, NumberInput, Select, Stack, Switch, Text } from '@mantine/core'
 import { LEVEL_WORDS, LEVELS } from '../../document/commands'
 import { withAutonomy, type LossPolicy, type Supervision } from '../../document/supervision'
 
@@ -18,7 +18,7 @@ export interface StartOptionsProps {
 export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOptionsProps) {
   const set = (change: Partial<Supervision>) => onChange({ ...supervision, ...change })
   return (
-    <div className="start-options">
+    <Stack gap="sm">
       <Select
         size="sm"
         label="Autonomy at the start"
@@ -55,9 +55,10 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
         checked={supervision.usesBreakpoints}
         onChange={(event) => set({ usesBreakpoints: event.currentTarget.checked })}
       />
-      <div className="loss">
+      <Group gap="xs" align="flex-end" wrap="nowrap">
         <Select
           size="sm"
+          flex={1}
           label="When the operator is lost"
           data={LOSSES}
           value={supervision.lossPolicy}
@@ -66,13 +67,18 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
         />
         <NumberInput
           size="sm"
+          w={90}
           label="After"
           min={0}
           value={supervision.lossTimeoutS}
           onChange={(value) => set({ lossTimeoutS: Math.max(0, Number(value) || 0) })}
-          rightSection={<span className="field-unit">s</span>}
+          rightSection={
+            <Text size="xs" c="var(--quiet)">
+              s
+            </Text>
+          }
         />
-      </div>
-    </div>
+      </Group>
+    </Stack>
   )
 }

@@ -2,21 +2,21 @@
 import { IconBarrierBlock } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
+import { Notice } from '../../components/Notice'
 import { blockedPaths, sinceWords } from '../../document/plannedPaths'
 
 export function BlockedPaths() {
   const robots = useLive((s) => s.robots)
   const blocked = blockedPaths(robots)
   return (
-    <div aria-live="polite" className="blocked-area">
+    <div aria-live="polite">
       {blocked.length > 0 && (
         <ul className="plain-list" aria-label="Arms with a blocked path">
           {blocked.map(({ robot, path }) => (
-            <li key={robot} className="blocked-path">
-              <IconBarrierBlock size={18} aria-hidden />
-              <span>
+            <li key={robot}>
+              <Notice icon={<IconBarrierBlock size={18} aria-hidden />}>
                 <strong>{robot}</strong> waits: {path.reason || 'its path is blocked'}, since <Since sinceS={path.since_s} />
-              </span>
+              </Notice>
             </li>
           ))}
         </ul>
@@ -33,7 +33,7 @@ function Since({ sinceS }: { sinceS: number }) {
   }, [])
   // The time is not announced again and again.
   return (
-    <span role="timer" aria-live="off" className="elapsed">
+    <span role="timer" aria-live="off" style={{ fontVariantNumeric: 'tabular-nums' }}>
       {sinceWords(now - sinceS)}
     </span>
   )

@@ -5,6 +5,7 @@ import { connectCell, loadCellConnection, useCellConnection } from '../../api/ce
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
 import { CommandButton } from '../../components/CommandButton'
+import { Notice } from '../../components/Notice'
 
 const LOOK_MS = 1000
 const LOST: ReadonlySet<string> = new Set(['fault', 'disconnected'])
@@ -29,26 +30,29 @@ export function LostCell() {
   }, [isSuspect, modes])
   if (connected || !isServed) return null
   return (
-    <div className="lost-cell" role="alert">
-      <IconPlugConnectedX size={20} aria-hidden />
-      <span>
-        <strong>The cell is not connected:</strong> {reason || 'no reason was given'}. Runs that need it are refused until it is connected
-        again.
-        {problem && (
-          <span className="lost-cell-problem">
-            <strong>Not connected:</strong> {problem}
-          </span>
-        )}
-      </span>
-      {mayOperate && (
-        <CommandButton
-          label={isConnecting ? 'Connecting' : 'Connect again'}
-          tone="strong"
-          obstacle={isConnecting ? 'it is being connected' : undefined}
-          onPress={() => void connect()}
-        />
+    <Notice
+      role="alert"
+      icon={<IconPlugConnectedX size={20} aria-hidden />}
+      tools={
+        mayOperate && (
+          <CommandButton
+            label={isConnecting ? 'Connecting' : 'Connect again'}
+            tone="strong"
+            obstacle={isConnecting ? 'it is being connected' : undefined}
+            onPress={() => void connect()}
+          />
+        )
+      }
+    >
+      <strong>The cell is not connected:</strong> {reason || 'no reason was given'}. Runs that need it are refused until it is connected
+      again.
+      {problem && (
+        <>
+          <br />
+          <strong>Not connected:</strong> {problem}
+        </>
       )}
-    </div>
+    </Notice>
   )
 }
 

@@ -1,4 +1,5 @@
 /** The arms of the cell: what each does, how fast it may, and out of a reflex again. */
+import { Box, Group, Text } from '@mantine/core'
 import { lookup } from '../../document/dict'
 import { IconRobot } from '@tabler/icons-react'
 import { useState } from 'react'
@@ -9,18 +10,21 @@ import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { StatusIcon } from '../../components/StatusIcon'
 import { modeWords, robotLook } from '../../document/robotMode'
+import type { Status } from '../../document/runState'
+
+const EDGES: Partial<Record<Status, string>> = { failed: 'var(--failed)', active: 'var(--active)' }
 
 export function RobotStrip() {
   const robots = useLive((s) => s.robots)
   const names = Object.keys(robots).toSorted()
   if (names.length === 0) return null
   return (
-    <ul className="plain-list robots" aria-label="Arms">
+    <Box component="ul" className="plain-list" flex="none" mah="45%" style={{ overflow: 'auto' }} aria-label="Arms">
       {names.map((name) => {
         const robot = lookup(robots, name)
         return robot && <Robot key={name} robot={robot} />
       })}
-    </ul>
+    </Box>
   )
 }
 
@@ -44,16 +48,35 @@ function Robot({ robot }: { robot: RobotLive }) {
   }
 
   return (
-    <li className={`robot is-${look}`} aria-label={`Arm ${name}`}>
-      <span className="robot-name">
+    <Group
+      component="li"
+      gap="4xs"
+      px="sm"
+      py={5}
+      fz="0.84rem"
+      bg={look === 'failed' ? 'var(--failed-soft)' : 'none'}
+      style={{
+        '--label': look === 'failed' ? 'var(--text)' : 'var(--quiet)',
+        columnGap: 14,
+        borderTop: '1px solid var(--line)',
+        borderInlineStart: `4px solid ${EDGES[look] ?? 'transparent'}`,
+      }}
+      data-status={look}
+      aria-label={`Arm ${name}`}
+    >
+      <Group component="span" gap="3xs" miw="5em" fw={620}>
         <IconRobot size={16} aria-hidden />
         {name}
-      </span>
-      <span className="robot-mode" role="status" aria-label={`State of ${name}`}>
+      </Group>
+      <Group component="span" gap="3xs" flex="1 1 8em" role="status" aria-label={`State of ${name}`}>
         <StatusIcon status={look} size={14} />
         {modeWords(robot)}
-        {activity && <span className="quiet">{activity}</span>}
-      </span>
+        {activity && (
+          <Text span inherit c="var(--label)">
+            {activity}
+          </Text>
+        )}
+      </Group>
       <CommitSlider
         label="Speed"
         min={5}
@@ -74,12 +97,16 @@ function Robot({ robot }: { robot: RobotLive }) {
           onPress={() => void attempt(() => api.recover(name))}
         />
       )}
-      {error && <span className="robot-error">{error}</span>}
-      {problem && (
-        <span className="robot-error" role="alert">
-          {problem}
-        </span>
-      )}
-    </li>
+      {error && <Problem>{error}</Problem>}
+      {problem && <Problem isNew>{problem}</Problem>}
+    </Group>
+  )
+}
+
+function Problem({ children, isNew = false }: { readonly children: string; readonly isNew?: boolean }) {
+  return (
+    <Text span inherit flex="1 0 100%" c="var(--failed)" style={{ overflowWrap: 'anywhere' }} {...(isNew ? { role: 'alert' } : {})}>
+      {children}
+    </Text>
   )
 }

@@ -32,6 +32,8 @@ it('shows what the server finds, by kind, and leads there by the keyboard', asyn
 })
 
 it('offers the commands of the page; one that cannot be used now says why', async () => {
+  // The search is asked where the pause between keys is long enough.
+  server().on('GET /search', [])
   const undo = vi.fn()
   const end = offerCommands(() => [
     { id: 'command:undo', title: 'Undo', group: 'Commands', hint: 'Ctrl Z', obstacle: 'nothing was changed', run: undo },

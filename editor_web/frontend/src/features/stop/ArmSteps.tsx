@@ -1,11 +1,10 @@
 /** The steps of the recovery that are about arms, what they hold and the parts. */
-import { Button, Group, Text } from '@mantine/core'
+import { Button, Group, Paper, Text } from '@mantine/core'
 import { useState, type ReactNode } from 'react'
 import { recovery } from '../../api/recovery'
 import type { ArmRecovery, CellStop } from '../../api/types'
 import { deviceWords, partWords } from '../../document/recovery'
 import { Confirm } from './Confirm'
-import classes from './recovery.module.css'
 import { useStep, type StepCommand, type StepProps } from './useStep'
 
 export function RestStep({ stop }: { readonly stop: CellStop }) {
@@ -13,9 +12,15 @@ export function RestStep({ stop }: { readonly stop: CellStop }) {
     <>
       <ul className="plain-list" aria-label="What the stop did">
         {stop.devices.map((device) => (
-          <li key={device.name} data-state={device.status} className={classes['device']}>
+          <Text
+            component="li"
+            key={device.name}
+            size="sm"
+            c={device.status === 'failed' ? 'var(--failed)' : 'inherit'}
+            style={{ overflowWrap: 'anywhere' }}
+          >
             <strong>{device.name}</strong> {deviceWords(device)}
-          </li>
+          </Text>
         ))}
       </ul>
       {stop.devices.some((device) => device.status === 'failed') && (
@@ -89,7 +94,11 @@ export function JogStep({ stop, mayOperate, renderJog, onTeach }: JogStepProps) 
           </Button>
         </ArmRow>
       ))}
-      {isChosen && <div className={classes['jog']}>{renderJog(chosen)}</div>}
+      {isChosen && (
+        <Paper withBorder p="xs" my="xs">
+          {renderJog(chosen)}
+        </Paper>
+      )}
       <Text size="sm" c="dimmed">
         An arm moves only while you hold a key. What it holds does not block it.{' '}
         <Button size="compact-xs" variant="subtle" onClick={onTeach}>
@@ -161,12 +170,27 @@ function homeWords(arm: ArmRecovery): string {
 
 function ArmRow({ arm, words, children }: { readonly arm: ArmRecovery; readonly words: string; readonly children: ReactNode }) {
   return (
-    <div className={classes['arm']} role="group" aria-label={arm.name}>
-      <span>
-        <strong>{arm.name}</strong> {words}
-      </span>
-      <span className={classes['armTools']}>{children}</span>
-    </div>
+    <StepRow label={arm.name} tools={children}>
+      <strong>{arm.name}</strong> {words}
+    </StepRow>
+  )
+}
+
+interface StepRowProps {
+  readonly label: string
+  readonly tools: ReactNode
+  readonly children: ReactNode
+}
+
+/** An arm or a run of a step, and what can be done with it. */
+export function StepRow({ label, tools, children }: StepRowProps) {
+  return (
+    <Group justify="space-between" gap="xs" py="xs" fz="sm" style={{ overflowWrap: 'anywhere' }} role="group" aria-label={label}>
+      <span>{children}</span>
+      <Group component="span" gap="xs">
+        {tools}
+      </Group>
+    </Group>
   )
 }
 
@@ -178,9 +202,9 @@ function canAct(stop: CellStop, mayOperate: boolean, command: StepCommand): bool
 export function Problem({ command }: { readonly command: StepCommand }) {
   return (
     command.problem && (
-      <p role="alert" className={classes['problem']}>
+      <Text size="sm" mt="xs" c="var(--failed)" role="alert" style={{ overflowWrap: 'anywhere' }}>
         {command.problem}
-      </p>
+      </Text>
     )
   )
 }

@@ -1,5 +1,5 @@
 /** The recovery guide: the steps from a stopped cell back to runs, each with its state, in the order that makes sense. */
-import { Accordion, CloseButton, Text, Title } from '@mantine/core'
+import { Accordion, CloseButton, Group, Stack, Text, Title, VisuallyHidden } from '@mantine/core'
 import { IconCircle, IconMinus } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
@@ -7,7 +7,6 @@ import { nextStep, STATE_WORDS, stepsOf, type RecoveryStep, type StepId, type St
 import { StatusIcon } from '../../components/StatusIcon'
 import { HomeStep, JogStep, PartsStep, ResetStep, RestStep } from './ArmSteps'
 import { openGuide } from './guide'
-import classes from './recovery.module.css'
 import { ReleaseStep, RunsStep } from './RunSteps'
 import type { StepProps } from './useStep'
 
@@ -23,9 +22,9 @@ function StateIcon({ state }: { readonly state: StepState }) {
   if (state === 'done') return <StatusIcon status="done" size={18} />
   if (state === 'problem') return <StatusIcon status="failed" size={18} />
   return state === 'open' ? (
-    <IconCircle size={18} className={classes['openIcon']} aria-hidden />
+    <IconCircle size={18} color="var(--active)" aria-hidden />
   ) : (
-    <IconMinus size={18} className="quiet" aria-hidden />
+    <IconMinus size={18} color="var(--quiet)" aria-hidden />
   )
 }
 
@@ -39,13 +38,22 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
   const isOpened = (step: RecoveryStep) => toggled[step.id] ?? (step.state === 'open' || step.state === 'problem')
   const opened = steps.filter(isOpened).map((step) => step.id)
   return (
-    <section className={classes['guide']} aria-label="Recovery guide">
-      <header className={classes['guideHead']}>
+    <Stack
+      component="section"
+      gap="sm"
+      h="100%"
+      px="md"
+      py="sm"
+      bg="var(--surface)"
+      style={{ overflowY: 'auto' }}
+      aria-label="Recovery guide"
+    >
+      <Group component="header" justify="space-between">
         <Title order={2} size="h4">
           Recovery guide
         </Title>
         <CloseButton aria-label="Close the recovery guide" onClick={() => openGuide(false)} />
-      </header>
+      </Group>
       <Text size="sm" c="dimmed">
         {mayOperate
           ? 'From the stopped cell back to runs. Nothing moves unless you press it here or jog.'
@@ -73,16 +81,17 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
             value={step.id}
             data-state={step.state}
             data-next={step.id === next || undefined}
-            className={classes['step']}
+            bg="var(--raised)"
+            style={{ borderColor: step.state === 'problem' ? 'var(--failed)' : step.id === next ? 'var(--active)' : 'var(--line)' }}
           >
             <Accordion.Control icon={<StateIcon state={step.state} />}>
-              <span className={classes['stepTitle']}>
+              <Text span inherit display="block" fw={600}>
                 {at + 1}. {step.title}
-              </span>
-              <span className={classes['stepWords']}>
-                <span className="visually-hidden">{STATE_WORDS[step.state]}: </span>
+              </Text>
+              <Text span size="xs" display="block" c="var(--quiet)" style={{ overflowWrap: 'anywhere' }}>
+                <VisuallyHidden component="span">{STATE_WORDS[step.state]}: </VisuallyHidden>
                 {step.words}
-              </span>
+              </Text>
             </Accordion.Control>
             <Accordion.Panel>
               <StepBody id={step.id} stop={stop} mayOperate={mayOperate} {...props} />
@@ -90,7 +99,7 @@ export function RecoveryGuide(props: RecoveryGuideProps) {
           </Accordion.Item>
         ))}
       </Accordion>
-    </section>
+    </Stack>
   )
 }
 

@@ -4,9 +4,8 @@ import { api } from '../../api/client'
 import { recovery } from '../../api/recovery'
 import type { StoppedRun } from '../../api/types'
 import { partWords, releaseObstacle, undecided } from '../../document/recovery'
-import { Problem } from './ArmSteps'
+import { Problem, StepRow } from './ArmSteps'
 import { Confirm } from './Confirm'
-import classes from './recovery.module.css'
 import { useStep, type StepProps } from './useStep'
 
 export function ReleaseStep({ stop, mayOperate }: StepProps) {
@@ -69,30 +68,33 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
     <>
       {!isReleased && <Text size="sm">The stop has ended these runs. Release the stop first.</Text>}
       {stop.runs.map((run) => (
-        <div key={run.id} className={classes['arm']} role="group" aria-label={`Run ${run.id}`}>
-          <span>
-            <strong>{nameOf(run.behavior)}</strong> {run.path ? `was stopped in ${run.path}` : 'was stopped before its first state'}
-          </span>
-          <span className={classes['armTools']}>
-            {run.path && (
-              <Confirm
-                label="Resume"
-                title={`Start ${nameOf(run.behavior)} at ${run.path}?`}
-                disabled={!mayOperate || !isReleased || command.busy !== ''}
-                loading={command.busy === run.id}
-                onConfirm={() => command.send(run.id, () => resume(run))}
-              >
-                <Text size="sm">
-                  A new run starts at the state {run.path}, with the data and parameters of the stopped one. The arms are where they are
-                  now: check that this state can start from there.
-                </Text>
-              </Confirm>
-            )}
-            <Button size="xs" variant="default" disabled={!isReleased} onClick={() => onBehavior(run.behavior)}>
-              Start anew
-            </Button>
-          </span>
-        </div>
+        <StepRow
+          key={run.id}
+          label={`Run ${run.id}`}
+          tools={
+            <>
+              {run.path && (
+                <Confirm
+                  label="Resume"
+                  title={`Start ${nameOf(run.behavior)} at ${run.path}?`}
+                  disabled={!mayOperate || !isReleased || command.busy !== ''}
+                  loading={command.busy === run.id}
+                  onConfirm={() => command.send(run.id, () => resume(run))}
+                >
+                  <Text size="sm">
+                    A new run starts at the state {run.path}, with the data and parameters of the stopped one. The arms are where they are
+                    now: check that this state can start from there.
+                  </Text>
+                </Confirm>
+              )}
+              <Button size="xs" variant="default" disabled={!isReleased} onClick={() => onBehavior(run.behavior)}>
+                Start anew
+              </Button>
+            </>
+          }
+        >
+          <strong>{nameOf(run.behavior)}</strong> {run.path ? `was stopped in ${run.path}` : 'was stopped before its first state'}
+        </StepRow>
       ))}
       <Group justify="flex-end">
         <Button

@@ -1,5 +1,4 @@
 /** STOP of the cell, over every page and dialog, and what became of it; it needs nothing of the rest of the page. */
-import './stop.css'
 import { IconHandStop, IconX } from '@tabler/icons-react'
 import { useEffect, useRef } from 'react'
 import { createPortal } from 'react-dom'
@@ -11,6 +10,7 @@ import { useTop } from '../../components/modal'
 import { letTabReach } from '../../components/stopFocus'
 import { listenForStopKey, STOP_KEY } from '../../components/stopKey'
 import { reportOf } from '../../document/stopReport'
+import classes from './stop.module.css'
 
 const HINT =
   'Stops every run and every goal; the arms decelerate to rest, also when the engine does not answer. ' +
@@ -28,23 +28,23 @@ export function StopCell() {
   useEffect(() => listenForStopKey(), [])
   useEffect(() => letTabReach(() => button.current), [])
   useEffect(() => {
-    document.body.classList.toggle('has-stop', isShown)
+    document.body.toggleAttribute('data-has-stop', isShown)
   }, [isShown])
   if (!isShown) return null
   return createPortal(
-    <section className="stop" aria-label="Stop of the cell">
+    <section className={classes.stop} aria-label="Stop of the cell">
       {/* No button of the kit: it works also where the page and the kit have failed. */}
       <button
         ref={button}
         type="button"
-        className="stop-button"
+        className={classes.button}
         title={HINT}
         aria-keyshortcuts="Control+Shift+Backspace"
         onClick={stopCell}
       >
         <IconHandStop size={24} aria-hidden />
         <span>
-          Stop<span className="stop-rest"> the cell</span>
+          Stop<span className={classes.rest}> the cell</span>
         </span>
       </button>
       <StopMessage />
@@ -64,14 +64,14 @@ function StopMessage() {
     return () => clearTimeout(timer)
   }, [isDone, stop?.number])
   return (
-    <div className="stop-news" role="status" aria-live="assertive" aria-label="State of the stop">
+    <div role="status" aria-live="assertive" aria-label="State of the stop">
       {report && (
-        <div className={`stop-report is-${report.level}`} role={report.level === 'alarm' ? 'alert' : undefined}>
+        <div className={classes.report} data-level={report.level} role={report.level === 'alarm' ? 'alert' : undefined}>
           <strong>{report.title}</strong>
           {report.lines.map((line) => (
             <p key={line}>{line}</p>
           ))}
-          <button type="button" className="stop-away" aria-label="Put the words about the stop away" onClick={forgetStop}>
+          <button type="button" className={classes.away} aria-label="Put the words about the stop away" onClick={forgetStop}>
             <IconX size={16} aria-hidden />
           </button>
         </div>

@@ -1,5 +1,5 @@
 /** Says on every page that the cell is stopped, for as long as no run may start, and leads to the recovery guide. */
-import { Button } from '@mantine/core'
+import { Box, Button, Group, Text } from '@mantine/core'
 import { IconHandStop, IconListCheck } from '@tabler/icons-react'
 import { useEffect } from 'react'
 import { loadStop, pollStop, recovery } from '../../api/recovery'
@@ -9,7 +9,6 @@ import type { CellStop } from '../../api/types'
 import { deviceWords, nextStep, stepsOf } from '../../document/recovery'
 import { wallTime } from '../../document/time'
 import { openGuide, useGuide } from './guide'
-import classes from './recovery.module.css'
 
 const TITLES: Readonly<Record<CellStop['phase'], string>> = {
   stopping: 'The cell is stopping',
@@ -34,23 +33,33 @@ export function StoppedBanner() {
   if (!stop) return null
   const next = stepsOf(stop).find((step) => step.id === nextStep(stepsOf(stop)))
   return (
-    <section className={classes['banner']} data-phase={stop.phase} aria-label="Stopped cell">
-      <IconHandStop size={22} aria-hidden />
-      <div className={classes['bannerWords']}>
-        <p role="status">
-          <strong>{TITLES[stop.phase]}</strong>{' '}
+    <Group
+      component="section"
+      gap="sm"
+      px="md"
+      py="xs"
+      bg={stop.phase === 'released' ? 'var(--done-soft)' : 'var(--failed-soft)'}
+      style={{ border: `0 solid var(--${stop.phase === 'released' ? 'done' : 'failed'})`, borderWidth: '0 0 1px 10px' }}
+      aria-label="Stopped cell"
+    >
+      <IconHandStop size={22} style={{ flex: 'none' }} aria-hidden />
+      <Box flex="1 1 18rem" miw={0} style={{ overflowWrap: 'anywhere' }}>
+        <Text size="sm" role="status">
+          <Text span size="md" fw={700}>
+            {TITLES[stop.phase]}
+          </Text>{' '}
           {stop.phase === 'released'
             ? 'Runs can start.'
             : `since ${wallTime(stop.since_unix_s)}: ${stop.reason}. No run starts until the stop is released.`}
-        </p>
-        <p className={classes['devices']}>{stop.devices.map((device) => `${device.name} ${deviceWords(device)}`).join(' · ')}</p>
+        </Text>
+        <Text size="xs">{stop.devices.map((device) => `${device.name} ${deviceWords(device)}`).join(' · ')}</Text>
         {next && (
-          <p className={classes['devices']}>
+          <Text size="xs">
             Next: {next.title} ({next.words})
-          </p>
+          </Text>
         )}
-      </div>
-      <div className={classes['bannerTools']}>
+      </Box>
+      <Group gap="xs">
         <Button
           size="sm"
           variant="default"
@@ -61,8 +70,8 @@ export function StoppedBanner() {
           {isOpen ? 'Close the guide' : 'Recovery guide'}
         </Button>
         {stop.phase === 'released' && <EndRecovery />}
-      </div>
-    </section>
+      </Group>
+    </Group>
   )
 }
 
