@@ -1,21 +1,14 @@
-/** The look of the components: the accent of `styles/tokens.css`, spaces that suit a tool, the same in both schemes. */
-import { createTheme, rem, type MantineColorsTuple } from '@mantine/core'
+/** The look of the components: accent and greys of `styles/tokens.css`, spaces that suit a tool, the same in both schemes. */
+import { Anchor, createTheme, rem, type MantineColorsTuple } from '@mantine/core'
 
-const accent: MantineColorsTuple = [
-  'var(--accent-0)',
-  'var(--accent-1)',
-  'var(--accent-2)',
-  'var(--accent-3)',
-  'var(--accent-4)',
-  'var(--accent-5)',
-  'var(--accent-6)',
-  'var(--accent-7)',
-  'var(--accent-8)',
-  'var(--accent-9)',
-]
+/** The ten steps of a colour of the tokens. */
+function steps(name: string): MantineColorsTuple {
+  const step = (index: number) => `var(--${name}-${index})`
+  return [step(0), step(1), step(2), step(3), step(4), step(5), step(6), step(7), step(8), step(9)]
+}
 
 export const theme = createTheme({
-  colors: { accent },
+  colors: { accent: steps('accent'), dark: steps('dark') },
   primaryColor: 'accent',
   primaryShade: { light: 7, dark: 6 },
   fontFamily: "'Inter Variable', system-ui, sans-serif",
@@ -23,6 +16,8 @@ export const theme = createTheme({
   defaultRadius: 'md',
   cursorType: 'pointer',
   respectReducedMotion: true,
+  // A link in a text is known by its line, not by its colour alone.
+  components: { Anchor: Anchor.extend({ defaultProps: { underline: 'always', c: 'var(--accent)' } }) },
   // Narrower than the kit's own: panels stand close together here. 4, 6 and 8 px of a 16 px page.
   spacing: { '4xs': rem(4), '3xs': rem(6), '2xs': rem(8) },
 })
