@@ -1,6 +1,7 @@
 /** The page of the cell, for reading: what it consists of, where that is, and what it does now. */
+import { Box } from '@mantine/core'
 import { useMemo, useState } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { Group, Panel as Pane } from 'react-resizable-panels'
 import { cellItems } from '../api/cellItems'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
@@ -8,13 +9,16 @@ import { hasCellView } from '../api/session'
 import type { CellStateFrame, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
+import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
+import { Splitter } from '../components/Splitter'
 import { cellTree, nodeAt } from '../document/cellTree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { RobotStrip } from '../features/robots/RobotStrip'
+import classes from './pages.module.css'
 import { cellHref, TEACH_HREF } from './route'
 import { useFetched } from './useFetched'
 
@@ -39,7 +43,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   // What is selected comes to the front, each time that something is.
   const asked = useMemo(() => (item ? { tab: 'Details' } : undefined), [item])
   if (problem) return <Empty title="The cell cannot be read">{problem}</Empty>
-  if (!cell) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!cell) return <div role="status" aria-label="Loading" />
   const now = { robots, state }
   const node = nodeAt(tree, item)
   const select = (address: string) => onOpen(cellHref(address))
@@ -69,10 +73,10 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const view = (
     <Panel
       title="Cell"
-      className="cell-panel"
+      hasIcons
       tools={
         <>
-          <span className="spacer" />
+          <Box flex={1} />
           {hasCellView(session) && <ShowMenu />}
         </>
       }
@@ -83,24 +87,19 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   )
   return (
     <>
-      <header className="page-head">
-        <div className="page-head-text">
-          <h1>{cell.cell}</h1>
-          {cell.description && <p className="quiet">{cell.description}</p>}
-        </div>
-      </header>
+      <PageHead title={cell.cell} words={cell.description} />
       {isNarrow ? (
         <OpenedTabs label="Cell" bodies={{ Items: items, Details: details, '3D view': view }} asked={asked} />
       ) : (
-        <Group orientation="horizontal" className="work-space">
+        <Group orientation="horizontal" className={classes.work}>
           <Pane id="cell-items" defaultSize="30%" minSize="18%">
             {items}
           </Pane>
-          <Separator className="splitter" aria-label="Width of the items" />
+          <Splitter label="Width of the items" />
           <Pane id="cell-view" defaultSize="42%" minSize="20%">
             {view}
           </Pane>
-          <Separator className="splitter" aria-label="Width of the cell" />
+          <Splitter label="Width of the cell" />
           <Pane id="cell-details" defaultSize="28%" minSize="18%">
             {details}
           </Pane>
