@@ -1,8 +1,10 @@
 /** One factor in a form: what is varied, and over which values. */
-import { CloseButton } from '@mantine/core'
+import { CloseButton, NativeSelect, TextInput } from '@mantine/core'
 import { useId } from 'react'
 import type { FactorChoice } from '../../api/types'
 import { proposedFactor, short, type FactorDraft } from '../../document/sweeps'
+import { Note } from './Note'
+import classes from './sweeps.module.css'
 
 export const NO_FACTOR: FactorDraft = { address: '', kind: 'uniform', first: '', second: '', values: '' }
 const KINDS = [
@@ -31,9 +33,10 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
   }
 
   return (
-    <div className="sweep-factor" role="group" aria-label={`Factor ${name}`}>
-      <input
-        className="new-input mono sweep-factor-name"
+    <div className={classes.factor} role="group" aria-label={`Factor ${name}`}>
+      <TextInput
+        size="xs"
+        ff="monospace"
         list={list}
         aria-label="What is varied"
         placeholder="parameters.…, displace.…, cell.…"
@@ -47,8 +50,8 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
           </option>
         ))}
       </datalist>
-      <select
-        className="new-input"
+      <NativeSelect
+        size="xs"
         aria-label={`Distribution of ${name}`}
         value={factor.kind}
         onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
@@ -58,10 +61,11 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
             {words}
           </option>
         ))}
-      </select>
+      </NativeSelect>
       {factor.kind === 'values' ? (
-        <input
-          className="new-input sweep-factor-values"
+        <TextInput
+          size="xs"
+          className={classes.values ?? ''}
           aria-label={`Values of ${name}`}
           placeholder="0.3, 0.5, 1"
           value={factor.values}
@@ -69,16 +73,16 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
         />
       ) : (
         <>
-          <input
-            className="new-input"
+          <TextInput
+            size="xs"
             inputMode="decimal"
             aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
             placeholder={isNormal ? 'mean' : 'from'}
             value={factor.first}
             onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
           />
-          <input
-            className="new-input"
+          <TextInput
+            size="xs"
             inputMode="decimal"
             aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
             placeholder={isNormal ? 'deviation' : 'to'}
@@ -89,10 +93,10 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
       )}
       <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
       {choice && (
-        <p className="quiet sweep-note">
+        <Note isQuiet>
           {choice.nominal === null ? 'without a default' : `${short(choice.nominal)} ${choice.unit} where nothing is varied`}
           {choice.description && `; ${choice.description}`}
-        </p>
+        </Note>
       )}
     </div>
   )
