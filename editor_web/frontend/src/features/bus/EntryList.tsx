@@ -1,9 +1,11 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
+import { List, Text, Title, UnstyledButton } from '@mantine/core'
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
 import { byNamespace, shortName, type Named } from '../../document/busTree'
 import { ageText, rateText } from './words'
 import type { TopicMetrics } from '../../api/types'
+import classes from './bus.module.css'
 
 interface EntryListProps {
   readonly entries: readonly Named[]
@@ -17,18 +19,20 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
   const groups = useMemo(() => byNamespace(entries), [entries])
   const isTopics = kind === 'topics'
   return (
-    <nav className="bus-list" aria-label={`The ${kind} of the bus`}>
+    <nav className={classes.list} aria-label={`The ${kind} of the bus`}>
       {isTopics && (
-        <p className="bus-columns" aria-hidden>
-          <span className="grow">Topic</span>
-          <span>Rate</span>
-          <span>Latest</span>
-        </p>
+        <Text component="div" className={classes.columns ?? ''} fz="0.72rem" c="dimmed" aria-hidden>
+          <span className={classes.type}>Topic</span>
+          <span className={classes.figure}>Rate</span>
+          <span className={classes.figure}>Latest</span>
+        </Text>
       )}
       {groups.map((group) => (
-        <section key={group.name} className="bus-group" aria-label={group.name || 'Without a namespace'}>
-          <h3>{group.name || 'without a namespace'}</h3>
-          <ul className="plain-list">
+        <section key={group.name} aria-label={group.name || 'Without a namespace'}>
+          <Title order={3} px="sm" pt="4xs" pb={2} fz="0.74rem" fw={620} c="dimmed">
+            {group.name || 'without a namespace'}
+          </Title>
+          <List listStyleType="none" fz="inherit">
             {group.entries.map((entry) => (
               <Row
                 key={entry.name}
@@ -40,7 +44,7 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
                 age={isTopics ? ageText(lookup(traffic, entry.name)) : undefined}
               />
             ))}
-          </ul>
+          </List>
         </section>
       ))}
     </nav>
@@ -61,12 +65,12 @@ const Row = memo(
   function Row({ name, type, isChosen, onChoose, rate, age }: RowProps) {
     return (
       <li>
-        <button type="button" className="bus-row" aria-current={isChosen} onClick={() => onChoose(name)}>
-          <span className="bus-name">{shortName(name)}</span>
-          <span className="bus-type">{type}</span>
-          {rate !== undefined && <span className="bus-figure">{rate}</span>}
-          {age !== undefined && <span className="bus-figure">{age}</span>}
-        </button>
+        <UnstyledButton className={classes.row} aria-current={isChosen} onClick={() => onChoose(name)}>
+          <span className={classes.name}>{shortName(name)}</span>
+          <span className={classes.type}>{type}</span>
+          {rate !== undefined && <span className={classes.figure}>{rate}</span>}
+          {age !== undefined && <span className={classes.figure}>{age}</span>}
+        </UnstyledButton>
       </li>
     )
   },

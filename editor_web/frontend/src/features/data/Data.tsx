@@ -55,7 +55,7 @@ export function Data({ run, onShow }: DataProps) {
 
   function body() {
     if (!run) return <NoData title="No run is shown">Start the behavior; the userdata of its states appears here.</NoData>
-    if (!current) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!current) return <div role="status" aria-label="Loading" />
     if (current.problem) return <NoData title="The data cannot be shown">{current.problem}</NoData>
     if (scopes.length === 0 && search) return <NoData title="Nothing matches">Clear the search to see everything.</NoData>
     if (scopes.length === 0)

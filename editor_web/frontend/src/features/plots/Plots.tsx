@@ -89,7 +89,7 @@ export function Plots() {
 
   function body() {
     if (problem) return <Empty title="There are no numbers to plot">{problem}</Empty>
-    if (!topics) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!topics) return <div role="status" aria-label="Loading" />
     if (topics.length === 0) {
       return (
         <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="There is nothing to plot yet">

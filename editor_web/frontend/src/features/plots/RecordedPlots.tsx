@@ -112,7 +112,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
 
   function body() {
     if (problem || lost) return <Empty title="There are no recorded curves">{problem || lost}</Empty>
-    if (!topics) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!topics) return <div role="status" aria-label="Loading" />
     return (
       <div className={`plot-halves${isChoosing ? ' is-choosing' : ''}`}>
         {isChoosing && <FieldChooser topics={topics} chosen={known} onChoose={choose} />}
