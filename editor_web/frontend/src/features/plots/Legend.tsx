@@ -1,7 +1,8 @@
 /** The curves with their colours, their values now or where one points, and how to take one away. */
-import { IconX } from '@tabler/icons-react'
+import { CloseButton, List } from '@mantine/core'
 import type { Curves } from '../../document/curves'
 import { numeral } from '../../document/values'
+import classes from './plots.module.css'
 
 export interface LegendEntry {
   readonly id: string
@@ -23,36 +24,35 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
   const last = endS === undefined ? curves.length - 1 : curves.nearest(endS)
   const row = atS === undefined ? last : curves.nearest(atS)
   return (
-    <ul className="plain-list plot-legend" aria-label="Curves">
+    <List listStyleType="none" className={classes.legend ?? ''} aria-label="Curves">
       {entries.map((entry) => {
         const value = row === undefined || row < 0 ? NaN : curves.value(entry.id, row)
         return (
           <li key={entry.id}>
             <span
-              className={`plot-color${entry.color >= 8 ? ' is-dashed' : ''}`}
+              className={classes.color}
+              data-dashed={entry.color >= 8 || undefined}
               style={{ borderColor: `var(--curve-${entry.color % 8})` }}
               aria-hidden
             />
-            <span className="plot-label" title={`${entry.topic} ${entry.label}`}>
-              {entry.label} <span className="quiet">{entry.topic}</span>
+            <span className={classes.label} title={`${entry.topic} ${entry.label}`}>
+              {entry.label} <span>{entry.topic}</span>
             </span>
-            <span className="plot-value">
+            <span>
               {valueText(value)} {entry.unit}
             </span>
             {onRemove && (
-              <button
-                type="button"
-                className="plot-remove"
+              <CloseButton
+                size="xs"
+                iconSize={12}
                 aria-label={`Take away ${entry.label} of ${entry.topic}`}
                 onClick={() => onRemove(entry.id)}
-              >
-                <IconX size={12} aria-hidden />
-              </button>
+              />
             )}
           </li>
         )
       })}
-    </ul>
+    </List>
   )
 }
 
