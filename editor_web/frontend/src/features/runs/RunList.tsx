@@ -1,13 +1,22 @@
 /** The runs of this server, newest first. */
+import { List, NavLink, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
 import type { RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
-import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive, runStateOf, runWords } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
+
+const LOOK = {
+  root: { '--nl-bg': 'var(--accent-soft)', '--nl-hover': 'var(--accent-soft)', '--nl-color': 'var(--text)' },
+  section: { marginInlineEnd: 8 },
+  label: { fontWeight: 550 },
+  description: { '--description-opacity': 1, '--description-color': 'var(--quiet)' },
+}
+/** Digits stay where they are while it goes on. */
+const TIME = { fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' } as const
 
 export interface RunListProps {
   readonly current: string | undefined
@@ -19,27 +28,34 @@ export interface RunListProps {
 export function RunList({ current, href, onOpen, limit }: RunListProps) {
   const runs = useLive((s) => s.runs)
   return (
-    <nav className="run-list" aria-label="Runs">
-      <h2 className="side-title">Runs</h2>
+    <nav aria-label="Runs">
+      <Text component="h2" fz="0.75rem" fw={600} mx="2xs" mb="2xs" c="dimmed">
+        Runs
+      </Text>
       {runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
-      <ul className="plain-list">
+      <List listStyleType="none">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
-            <PageLink
+            <NavLink
+              px="2xs"
+              py={5}
+              bdrs="md"
+              styles={LOOK}
               href={href(run.id)}
-              className={`side-item run-item${run.id === current ? ' is-current' : ''}`}
-              isCurrent={run.id === current}
-              onOpen={() => onOpen(run.id)}
-            >
-              <StatusIcon status={runStateOf(run).look} size={15} />
-              <span className="side-item-name">{nameOf(run.behavior)}</span>
-              <span className="side-item-text">
-                {wallTime(run.started_at_s)} · {runText(run)}
-              </span>
-            </PageLink>
+              active={run.id === current}
+              aria-current={run.id === current ? 'page' : undefined}
+              leftSection={<StatusIcon status={runStateOf(run).look} size={15} />}
+              label={nameOf(run.behavior)}
+              description={`${wallTime(run.started_at_s)} · ${runText(run)}`}
+              onClick={(event) => {
+                if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+                event.preventDefault()
+                onOpen(run.id)
+              }}
+            />
           </li>
         ))}
-      </ul>
+      </List>
     </nav>
   )
 }
@@ -59,7 +75,11 @@ export function RunTime({ run }: { run: RunView }) {
   // The time of a paused run stands.
   if (isActive(run) && run.id === watched) return <Elapsed sinceS={0} />
   if (isActive(run) && run.waits !== 'paused') return <SinceStart startedS={run.started_at_s} />
-  return <span className="elapsed">{duration(run.duration_s)}</span>
+  return (
+    <Text span inherit style={TIME}>
+      {duration(run.duration_s)}
+    </Text>
+  )
 }
 
 /** By the clock on the wall, for runs that are not watched. */
@@ -69,5 +89,9 @@ function SinceStart({ startedS }: { startedS: number }) {
     const timer = setInterval(() => setNow(serverNow()), 1000)
     return () => clearInterval(timer)
   }, [])
-  return <span className="elapsed">{duration(Math.max(0, now - startedS))}</span>
+  return (
+    <Text span inherit style={TIME}>
+      {duration(Math.max(0, now - startedS))}
+    </Text>
+  )
 }

@@ -1,10 +1,12 @@
 /** A run at a glance: one cell for each of its steps, lit by the run that is shown here. */
+import { Stack, Text } from '@mantine/core'
 import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
 import { stripCells, pathWords, progressText } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
+import classes from './runs.module.css'
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])
@@ -16,21 +18,23 @@ export function RunStrip({ root }: { root: GraphNode }) {
     ),
   )
   return (
-    <div className="run-strip">
-      <div className="run-cells" role="img" aria-label={words}>
+    <Stack gap="4xs">
+      <div className={classes.cells} role="img" aria-label={words}>
         {cells.map((node) => (
           <Cell key={node.path} path={node.path} />
         ))}
       </div>
-      <span className="quiet" aria-hidden>
+      <Text span fz="0.78rem" c="dimmed" aria-hidden>
         {words}
-      </span>
-    </div>
+      </Text>
+    </Stack>
   )
 }
 
 function Cell({ path }: { path: string }) {
   const status = useNodePart(path, (live) => statusOf(live?.status ?? 'idle'))
   const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
-  return <span className={`run-cell is-${waits ? 'stopped' : status}`} title={`${pathWords(path)}: ${waits ? 'waits' : status}`} />
+  return (
+    <span className={classes.cell} data-status={waits ? 'stopped' : status} title={`${pathWords(path)}: ${waits ? 'waits' : status}`} />
+  )
 }
