@@ -1,5 +1,5 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
-import { List, Text, Title, UnstyledButton } from '@mantine/core'
+import { Box, Group, List, Title, UnstyledButton } from '@mantine/core'
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
 import { byNamespace, shortName, type Named } from '../../document/busTree'
@@ -21,11 +21,25 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
   return (
     <nav className={classes.list} aria-label={`The ${kind} of the bus`}>
       {isTopics && (
-        <Text component="div" className={classes.columns ?? ''} fz="0.72rem" c="dimmed" aria-hidden>
-          <span className={classes.type}>Topic</span>
+        <Group
+          pos="sticky"
+          top={0}
+          gap="2xs"
+          px="sm"
+          py={3}
+          wrap="nowrap"
+          bg="var(--surface)"
+          fz="0.72rem"
+          c="dimmed"
+          style={{ zIndex: 1 }}
+          aria-hidden
+        >
+          <Box component="span" flex={1}>
+            Topic
+          </Box>
           <span className={classes.figure}>Rate</span>
           <span className={classes.figure}>Latest</span>
-        </Text>
+        </Group>
       )}
       {groups.map((group) => (
         <section key={group.name} aria-label={group.name || 'Without a namespace'}>
@@ -67,7 +81,9 @@ const Row = memo(
       <li>
         <UnstyledButton className={classes.row} aria-current={isChosen} onClick={() => onChoose(name)}>
           <span className={classes.name}>{shortName(name)}</span>
-          <span className={classes.type}>{type}</span>
+          <Box component="span" flex={1}>
+            {type}
+          </Box>
           {rate !== undefined && <span className={classes.figure}>{rate}</span>}
           {age !== undefined && <span className={classes.figure}>{age}</span>}
         </UnstyledButton>

@@ -5,7 +5,6 @@ import { Empty } from '../../components/Empty'
 import { duration } from '../../document/time'
 import { holderText } from './words'
 import type { GoalInfo, LeaseMetrics } from '../../api/types'
-import classes from './bus.module.css'
 
 interface LeasesProps {
   readonly leases: readonly LeaseMetrics[]
@@ -25,7 +24,7 @@ export function Leases({ leases, goals, search }: LeasesProps) {
   return (
     <Box h="100%" style={{ overflow: 'auto' }} tabIndex={0} role="region" aria-label="Resource leases">
       <Table
-        className={classes.leases ?? ''}
+        styles={{ th: { background: 'var(--surface)', color: 'var(--quiet)' } }}
         fz="0.8rem"
         verticalSpacing="4xs"
         horizontalSpacing="sm"

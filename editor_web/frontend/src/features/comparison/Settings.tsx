@@ -2,7 +2,6 @@
 import { Box, Paper, Text, Title } from '@mantine/core'
 import type { DocumentDifference, ValueChange } from '../../api/types'
 import { DifferenceTable } from './DifferenceTable'
-import styles from './comparison.module.css'
 
 interface SettingsProps {
   readonly settings: readonly ValueChange[]
@@ -41,18 +40,24 @@ export function Settings({ settings, documents }: SettingsProps) {
             p="xs"
             bg="var(--ground)"
             fz="0.78rem"
-            className={styles.lines ?? ''}
+            style={{ overflow: 'auto' }}
             tabIndex={0}
             aria-label={`Lines of ${document.name}`}
           >
             {document.lines.map((line, index) => (
-              <div key={index} data-side={line.startsWith('+') ? 'right' : line.startsWith('-') ? 'left' : undefined}>
+              <Text key={index} component="span" inherit display="block" {...colorOf(line)}>
                 {line}
-              </div>
+              </Text>
             ))}
           </Paper>
         </section>
       ))}
     </Box>
   )
+}
+
+/** What only the left run has is red, what only the right one has green. */
+function colorOf(line: string): { readonly c?: string } {
+  if (line.startsWith('+')) return { c: 'var(--done)' }
+  return line.startsWith('-') ? { c: 'var(--failed)' } : {}
 }

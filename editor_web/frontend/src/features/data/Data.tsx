@@ -68,7 +68,19 @@ export function Data({ run, onShow }: DataProps) {
       <div className={classes.scroll} tabIndex={0} role="region" aria-label="Userdata">
         {scopes.map((scope) => (
           <section key={scope.path} aria-label={scope.name}>
-            <Title order={3} px="sm" py="4xs" fz="0.76rem" fw={620} c="dimmed" ff="monospace">
+            <Title
+              order={3}
+              pos="sticky"
+              top={0}
+              bg="var(--surface)"
+              style={{ zIndex: 1 }}
+              px="sm"
+              py="4xs"
+              fz="0.76rem"
+              fw={620}
+              c="dimmed"
+              ff="monospace"
+            >
               {scope.name}
               {!scope.isOpen && (
                 <Badge component="span" variant="default" size="xs" tt="none" ml="2xs">

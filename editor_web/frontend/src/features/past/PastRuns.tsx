@@ -93,28 +93,37 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
             : 'Every run that is started here is kept in the journal and listed on this page.'}
         </Empty>
       )}
-      <List listStyleType="none" className={classes.list ?? ''} aria-label="Past runs">
+      <List listStyleType="none" aria-label="Past runs">
         {found?.runs.map((run) => (
-          <li key={run.id}>
-            <Checkbox
-              size="xs"
-              aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
-              checked={chosen.some((each) => each.id === run.id)}
-              onChange={(event) => choose(run, event.currentTarget.checked)}
-            />
-            <Item run={run} href={href(run.id)} onOpen={() => onOpen(href(run.id))} />
-            <Menu position="bottom-end" withinPortal>
-              <Menu.Target>
-                <ActionIcon variant="subtle" color="gray" size="sm" aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}>
-                  <IconDots size={15} />
-                </ActionIcon>
-              </Menu.Target>
-              <Menu.Dropdown>
-                <Menu.Item onClick={() => onCompare(undefined, run.id)}>Compare with the last good run</Menu.Item>
-                <Menu.Item onClick={() => onOpen(trendHref(run.behavior))}>Last runs of {run.behavior}</Menu.Item>
-              </Menu.Dropdown>
-            </Menu>
-          </li>
+          <Box component="li" key={run.id} style={{ borderBottom: '1px solid var(--line)' }}>
+            <Group gap="xs" align="start" wrap="nowrap">
+              <Checkbox
+                mt="xs"
+                size="xs"
+                aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                checked={chosen.some((each) => each.id === run.id)}
+                onChange={(event) => choose(run, event.currentTarget.checked)}
+              />
+              <Item run={run} href={href(run.id)} onOpen={() => onOpen(href(run.id))} />
+              <Menu position="bottom-end" withinPortal>
+                <Menu.Target>
+                  <ActionIcon
+                    mt="xs"
+                    variant="subtle"
+                    color="gray"
+                    size="sm"
+                    aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                  >
+                    <IconDots size={15} />
+                  </ActionIcon>
+                </Menu.Target>
+                <Menu.Dropdown>
+                  <Menu.Item onClick={() => onCompare(undefined, run.id)}>Compare with the last good run</Menu.Item>
+                  <Menu.Item onClick={() => onOpen(trendHref(run.behavior))}>Last runs of {run.behavior}</Menu.Item>
+                </Menu.Dropdown>
+              </Menu>
+            </Group>
+          </Box>
         ))}
       </List>
       {found && found.total > found.runs.length && (

@@ -40,9 +40,9 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
           Record a run with <code>flexcell run --record FILE.mcap</code>; recordings anywhere in the project are listed here.
         </Empty>
       )}
-      <List listStyleType="none" className={classes.list ?? ''} aria-label="Recordings">
+      <List listStyleType="none" aria-label="Recordings">
         {files?.map((file) => (
-          <li key={file.path}>
+          <Box component="li" key={file.path} style={{ borderBottom: '1px solid var(--line)' }}>
             {file.problem ? (
               <div className={classes.item}>
                 <Named file={file} />
@@ -55,7 +55,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
                 <Named file={file} />
               </PageLink>
             )}
-          </li>
+          </Box>
         ))}
       </List>
     </Box>

@@ -1,11 +1,10 @@
 /** The numbers of all topics as a tree to choose from: topics, their fields, rows at once. */
-import { Badge, Box, Button, Checkbox, CloseButton, Group, List, Stack, Text, TextInput, UnstyledButton } from '@mantine/core'
+import { Badge, Box, Button, Checkbox, CloseButton, Group, List, Stack, Text, TextInput } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useState } from 'react'
 import { idOf, rowsOf, shownTopics, type FieldRow } from './fields'
 import { MOST_CURVES } from './keptFields'
 import type { TopicFields } from '../../api/types'
-import classes from './plots.module.css'
 
 interface FieldChooserProps {
   readonly topics: readonly TopicFields[]
@@ -32,7 +31,7 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
   }
 
   return (
-    <Stack gap="3xs" px="xs" py="2xs" className={classes.chooser ?? ''}>
+    <Stack gap="3xs" px="xs" py="2xs" mih={0} fz="0.8rem" style={{ overflowY: 'auto', borderInlineEnd: '1px solid var(--line)' }}>
       <TextInput
         size="xs"
         aria-label="Find a number"
@@ -59,15 +58,26 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
           const Chevron = isOpen ? IconChevronDown : IconChevronRight
           return (
             <li key={each.topic}>
-              <UnstyledButton className={classes.topic} aria-expanded={isOpen} onClick={() => fold(each.topic)}>
-                <Chevron size={13} aria-hidden />
-                <span>{each.topic}</span>
-                {count > 0 && (
-                  <Badge component="span" size="sm" variant="light">
-                    {count}
-                  </Badge>
-                )}
-              </UnstyledButton>
+              <Button
+                variant="subtle"
+                color="gray"
+                c="var(--text)"
+                size="compact-xs"
+                justify="start"
+                fullWidth
+                leftSection={<Chevron size={13} aria-hidden />}
+                rightSection={
+                  count > 0 && (
+                    <Badge component="span" size="sm" variant="light">
+                      {count}
+                    </Badge>
+                  )
+                }
+                aria-expanded={isOpen}
+                onClick={() => fold(each.topic)}
+              >
+                {each.topic}
+              </Button>
               {isOpen &&
                 rowsOf(each).map((row) => (
                   <Row key={row.name} topic={each.topic} row={row} chosen={chosen} isFull={isFull} onToggle={toggle} />

@@ -1,5 +1,5 @@
 /** The curves with their colours, their values now or where one points, and how to take one away. */
-import { CloseButton, List } from '@mantine/core'
+import { Box, CloseButton, Group, List, Text } from '@mantine/core'
 import type { Curves } from '../../document/curves'
 import { numeral } from '../../document/values'
 import classes from './plots.module.css'
@@ -24,31 +24,37 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
   const last = endS === undefined ? curves.length - 1 : curves.nearest(endS)
   const row = atS === undefined ? last : curves.nearest(atS)
   return (
-    <List listStyleType="none" className={classes.legend ?? ''} aria-label="Curves">
+    <List listStyleType="none" className={classes.legend ?? ''} px="sm" pb="3xs" fz="0.76rem" aria-label="Curves">
       {entries.map((entry) => {
         const value = row === undefined || row < 0 ? NaN : curves.value(entry.id, row)
         return (
           <li key={entry.id}>
-            <span
-              className={classes.color}
-              data-dashed={entry.color >= 8 || undefined}
-              style={{ borderColor: `var(--curve-${entry.color % 8})` }}
-              aria-hidden
-            />
-            <span className={classes.label} title={`${entry.topic} ${entry.label}`}>
-              {entry.label} <span>{entry.topic}</span>
-            </span>
-            <span>
-              {valueText(value)} {entry.unit}
-            </span>
-            {onRemove && (
-              <CloseButton
-                size="xs"
-                iconSize={12}
-                aria-label={`Take away ${entry.label} of ${entry.topic}`}
-                onClick={() => onRemove(entry.id)}
+            <Group gap="3xs" wrap="nowrap" miw={0}>
+              <Box
+                component="span"
+                flex="none"
+                w={16}
+                style={{ borderTop: `3px ${entry.color >= 8 ? 'dashed' : 'solid'} var(--curve-${entry.color % 8})` }}
+                aria-hidden
               />
-            )}
+              <Text span inherit truncate flex={1} title={`${entry.topic} ${entry.label}`}>
+                {entry.label}{' '}
+                <Text span inherit c="dimmed" className={classes.topic ?? ''}>
+                  {entry.topic}
+                </Text>
+              </Text>
+              <span>
+                {valueText(value)} {entry.unit}
+              </span>
+              {onRemove && (
+                <CloseButton
+                  size="xs"
+                  iconSize={12}
+                  aria-label={`Take away ${entry.label} of ${entry.topic}`}
+                  onClick={() => onRemove(entry.id)}
+                />
+              )}
+            </Group>
           </li>
         )
       })}

@@ -1,12 +1,18 @@
 /** A run at a glance: one cell for each of its steps, lit by the run that is shown here. */
-import { Stack, Text } from '@mantine/core'
+import { Box, Group, Stack, Text } from '@mantine/core'
 import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
 import { stripCells, pathWords, progressText } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
-import classes from './runs.module.css'
+
+const LIT: Readonly<Partial<Record<string, string>>> = {
+  active: 'var(--active)',
+  done: 'var(--done)',
+  failed: 'var(--failed)',
+  stopped: 'var(--stopped)',
+}
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])
@@ -19,11 +25,11 @@ export function RunStrip({ root }: { root: GraphNode }) {
   )
   return (
     <Stack gap="4xs">
-      <div className={classes.cells} role="img" aria-label={words}>
+      <Group gap={2} h={10} wrap="nowrap" align="stretch" role="img" aria-label={words}>
         {cells.map((node) => (
           <Cell key={node.path} path={node.path} />
         ))}
-      </div>
+      </Group>
       <Text span fz="0.78rem" c="dimmed" aria-hidden>
         {words}
       </Text>
@@ -34,7 +40,15 @@ export function RunStrip({ root }: { root: GraphNode }) {
 function Cell({ path }: { path: string }) {
   const status = useNodePart(path, (live) => statusOf(live?.status ?? 'idle'))
   const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
+  const shown = waits ? 'stopped' : status
   return (
-    <span className={classes.cell} data-status={waits ? 'stopped' : status} title={`${pathWords(path)}: ${waits ? 'waits' : status}`} />
+    <Box
+      flex={1}
+      miw={2}
+      bdrs={3}
+      bg={LIT[shown] ?? 'var(--line)'}
+      {...(shown === 'active' ? { style: { boxShadow: '0 0 0 2px var(--active-glow)' } } : {})}
+      title={`${pathWords(path)}: ${waits ? 'waits' : status}`}
+    />
   )
 }

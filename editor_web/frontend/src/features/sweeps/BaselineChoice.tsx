@@ -111,7 +111,7 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
               value={margin}
               onChange={(event) => setMargin(event.currentTarget.value)}
             />
-            <Button size="compact-sm" variant="default" type="submit" aria-disabled={isAsking || undefined} data-disabled={isAsking}>
+            <Button size="xs" variant="default" type="submit" aria-disabled={isAsking || undefined} data-disabled={isAsking}>
               Compare
             </Button>
           </Group>

@@ -6,8 +6,7 @@ import { differenceScale, pointsIntervalText, pointsText, ratesOf, shareText } f
 import { verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 import { Note } from './Note'
-import { ResultTable } from './ResultTable'
-import table from './table.module.css'
+import { ResultTable, UnseenHead } from './ResultTable'
 import classes from './bars.module.css'
 
 export function ComparedRates({
@@ -26,14 +25,14 @@ export function ComparedRates({
   return (
     <>
       <ResultTable label="Table of both versions">
-        <Table.Thead className={table.unseen}>
+        <UnseenHead>
           <Table.Tr>
             <Table.Th scope="col">Version</Table.Th>
             <Table.Th scope="col">Succeeded</Table.Th>
             <Table.Th scope="col">Rate</Table.Th>
             <Table.Td />
           </Table.Tr>
-        </Table.Thead>
+        </UnseenHead>
         <Table.Tbody>
           {rates.map((each) => (
             <Table.Tr key={each.name}>
@@ -42,17 +41,17 @@ export function ComparedRates({
                 {each.successes} of {each.runs}
               </Table.Td>
               <Table.Td ta="right">{shareText(each.successes, each.runs)}</Table.Td>
-              <Table.Td className={table.barCell} />
+              <Table.Td w="34%" miw={90} />
             </Table.Tr>
           ))}
           <Table.Tr>
             <Table.Th scope="row">Difference</Table.Th>
             <Table.Td ta="right">{pointsIntervalText(interval)}</Table.Td>
             <Table.Td ta="right">{pointsText(difference)}</Table.Td>
-            <Table.Td className={table.barCell}>
-              <Box component="span" display="block" mx={5} className={classes.difference} aria-hidden>
+            <Table.Td w="34%" miw={90}>
+              <Box component="span" display="block" mx={5} pos="relative" aria-hidden>
                 <span className={classes.zero} style={{ left: `${100 * place(0)}%` }} />
-                {margin !== null && <span className={classes.margin} style={{ left: `${100 * place(-margin)}%` }} />}
+                {margin !== null && <span className={classes.zero} data-margin style={{ left: `${100 * place(-margin)}%` }} />}
                 <IntervalBar interval={[place(interval[0]), place(interval[1])]} rate={place(difference)} isBad={interval[1] < 0} />
               </Box>
             </Table.Td>

@@ -3,7 +3,6 @@ import { List, Text } from '@mantine/core'
 import type { InputCoverage } from '../../api/types'
 import { coverageText } from '../../document/sweeps'
 import { Mono, PartTitle } from './Note'
-import classes from './sweeps.module.css'
 
 const PAIRS = 6
 
@@ -12,7 +11,14 @@ export function CoveredInputs({ inputs }: { readonly inputs: InputCoverage }) {
   return (
     <>
       <PartTitle>Inputs</PartTitle>
-      <List listStyleType="none" fz="0.8rem" className={classes.missing} aria-label="Covered inputs" tabIndex={0}>
+      <List
+        listStyleType="none"
+        fz="0.8rem"
+        mah="15rem"
+        style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+        aria-label="Covered inputs"
+        tabIndex={0}
+      >
         {inputs.factors.map((factor) => (
           <li key={factor.address}>
             <Mono>{factor.address}</Mono>{' '}

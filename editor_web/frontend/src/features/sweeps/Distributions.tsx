@@ -38,7 +38,7 @@ function Quantities({ group }: { readonly group: QuantileGroup }) {
         <Table.Tbody>
           {rows.map((row) => (
             <Table.Tr key={row.name}>
-              <Table.Th scope="row" ff="monospace" className={table.path} title={`${row.name}, ${row.runs} runs`}>
+              <Table.Th scope="row" ff="monospace" className={`${table.cut} ${table.path}`} title={`${row.name}, ${row.runs} runs`}>
                 {row.name}
               </Table.Th>
               {[row.least, row.middle, row.p95, row.most].map((value, at) => (
@@ -46,7 +46,7 @@ function Quantities({ group }: { readonly group: QuantileGroup }) {
                   {short(value)}
                 </Table.Td>
               ))}
-              <Table.Td className={table.barCell}>
+              <Table.Td w="34%" miw={90}>
                 <Strip row={row} from={common === undefined ? row.least : 0} to={common ?? row.most} />
               </Table.Td>
             </Table.Tr>

@@ -4,8 +4,7 @@ import type { FactorEffect } from '../../api/types'
 import { percent } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 import { Note, PartTitle } from './Note'
-import { ResultTable } from './ResultTable'
-import table from './table.module.css'
+import { ResultTable, UnseenHead } from './ResultTable'
 
 const FIRST = 8
 
@@ -15,14 +14,14 @@ export function FactorEffects({ effects }: { readonly effects: readonly FactorEf
       <PartTitle isMono>{effect.address}</PartTitle>
       <Note isQuiet>{effectText(effect)}</Note>
       <ResultTable label={`Success by ${effect.address}`}>
-        <Table.Thead className={table.unseen}>
+        <UnseenHead>
           <Table.Tr>
             <Table.Th scope="col">Value</Table.Th>
             <Table.Th scope="col">Succeeded</Table.Th>
             <Table.Th scope="col">Rate</Table.Th>
             <Table.Td />
           </Table.Tr>
-        </Table.Thead>
+        </UnseenHead>
         <Table.Tbody>
           {effect.levels.map((level) => (
             <Table.Tr key={level.label}>
@@ -31,7 +30,7 @@ export function FactorEffects({ effects }: { readonly effects: readonly FactorEf
                 {level.successes} of {level.runs}
               </Table.Td>
               <Table.Td ta="right">{percent(level.successes / level.runs)}</Table.Td>
-              <Table.Td className={table.barCell}>
+              <Table.Td w="34%" miw={90}>
                 <IntervalBar interval={level.interval} rate={level.successes / level.runs} />
               </Table.Td>
             </Table.Tr>

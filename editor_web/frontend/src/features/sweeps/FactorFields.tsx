@@ -1,10 +1,9 @@
 /** One factor in a form: what is varied, and over which values. */
-import { CloseButton, NativeSelect, TextInput } from '@mantine/core'
+import { CloseButton, Group, NativeSelect, Stack, TextInput } from '@mantine/core'
 import { useId } from 'react'
 import type { FactorChoice } from '../../api/types'
 import { proposedFactor, short, type FactorDraft } from '../../document/sweeps'
 import { Note } from './Note'
-import classes from './sweeps.module.css'
 
 export const NO_FACTOR: FactorDraft = { address: '', kind: 'uniform', first: '', second: '', values: '' }
 const KINDS = [
@@ -33,10 +32,10 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
   }
 
   return (
-    <div className={classes.factor} role="group" aria-label={`Factor ${name}`}>
+    <Stack gap="3xs" py="2xs" style={{ borderBottom: '1px solid var(--line)' }} role="group" aria-label={`Factor ${name}`}>
       <TextInput
         size="xs"
-        ff="monospace"
+        styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
         list={list}
         aria-label="What is varied"
         placeholder="parameters.…, displace.…, cell.…"
@@ -50,54 +49,60 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
           </option>
         ))}
       </datalist>
-      <NativeSelect
-        size="xs"
-        aria-label={`Distribution of ${name}`}
-        value={factor.kind}
-        onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
-      >
-        {KINDS.map(([value, words]) => (
-          <option key={value} value={value}>
-            {words}
-          </option>
-        ))}
-      </NativeSelect>
-      {factor.kind === 'values' ? (
-        <TextInput
+      <Group gap="3xs" wrap="nowrap">
+        <NativeSelect
           size="xs"
-          className={classes.values ?? ''}
-          aria-label={`Values of ${name}`}
-          placeholder="0.3, 0.5, 1"
-          value={factor.values}
-          onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })}
-        />
-      ) : (
-        <>
+          flex={1}
+          miw="6.5rem"
+          aria-label={`Distribution of ${name}`}
+          value={factor.kind}
+          onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
+        >
+          {KINDS.map(([value, words]) => (
+            <option key={value} value={value}>
+              {words}
+            </option>
+          ))}
+        </NativeSelect>
+        {factor.kind === 'values' ? (
           <TextInput
             size="xs"
-            inputMode="decimal"
-            aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
-            placeholder={isNormal ? 'mean' : 'from'}
-            value={factor.first}
-            onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
+            flex={2}
+            aria-label={`Values of ${name}`}
+            placeholder="0.3, 0.5, 1"
+            value={factor.values}
+            onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })}
           />
-          <TextInput
-            size="xs"
-            inputMode="decimal"
-            aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
-            placeholder={isNormal ? 'deviation' : 'to'}
-            value={factor.second}
-            onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })}
-          />
-        </>
-      )}
-      <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
+        ) : (
+          <>
+            <TextInput
+              size="xs"
+              flex={1}
+              inputMode="decimal"
+              aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
+              placeholder={isNormal ? 'mean' : 'from'}
+              value={factor.first}
+              onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
+            />
+            <TextInput
+              size="xs"
+              flex={1}
+              inputMode="decimal"
+              aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
+              placeholder={isNormal ? 'deviation' : 'to'}
+              value={factor.second}
+              onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })}
+            />
+          </>
+        )}
+        <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
+      </Group>
       {choice && (
         <Note isQuiet>
           {choice.nominal === null ? 'without a default' : `${short(choice.nominal)} ${choice.unit} where nothing is varied`}
           {choice.description && `; ${choice.description}`}
         </Note>
       )}
-    </div>
+    </Stack>
   )
 }

@@ -45,7 +45,7 @@ function Regions({ regions, cause }: { readonly regions: readonly FactorRegion[]
       <Table.Tbody>
         {regions.map((region) => (
           <Table.Tr key={region.address}>
-            <Table.Th scope="row" ff="monospace" className={table.path} title={region.address}>
+            <Table.Th scope="row" ff="monospace" className={`${table.cut} ${table.path}`} title={region.address}>
               <bdi>{region.address}</bdi>
             </Table.Th>
             <Table.Td ta="right">{rangeText(region.failing, region.listed)}</Table.Td>

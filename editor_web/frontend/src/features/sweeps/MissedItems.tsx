@@ -2,7 +2,6 @@
 import { List, Text } from '@mantine/core'
 import type { CoverageItem } from '../../api/types'
 import { Mono, Note } from './Note'
-import classes from './sweeps.module.css'
 
 const FIRST = 60
 
@@ -13,7 +12,14 @@ export function MissedItems({ items, missing }: { readonly items: number; readon
         {items - missing.length} of {items} nodes and exits of the behavior were executed.
       </Note>
       {missing.length > 0 && (
-        <List listStyleType="none" fz="0.8rem" className={classes.missing} aria-label="Never executed" tabIndex={0}>
+        <List
+          listStyleType="none"
+          fz="0.8rem"
+          mah="15rem"
+          style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+          aria-label="Never executed"
+          tabIndex={0}
+        >
           {missing.slice(0, FIRST).map((item) => (
             <li key={`${item.kind} ${item.path} ${item.name ?? ''} ${item.target ?? ''}`}>
               <Text span inherit c="dimmed">

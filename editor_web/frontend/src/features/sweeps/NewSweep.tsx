@@ -1,5 +1,5 @@
 /** Making a sweep: what is executed, how often, what is varied and what is required; it becomes a document. */
-import { Alert, Button, Fieldset, Group, NativeSelect, Stack, TextInput } from '@mantine/core'
+import { Alert, Button, Fieldset, Group, NativeSelect, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { api, wordsOf } from '../../api/client'
@@ -123,7 +123,14 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
           )}
         </Group>
         {draft.search && <SearchFields search={draft.search} onChange={(search) => change({ search })} />}
-        <Fieldset variant="unstyled" legend="What is varied">
+        <Fieldset
+          variant="unstyled"
+          legend={
+            <Text span fz="sm" fw={600}>
+              What is varied
+            </Text>
+          }
+        >
           {draft.factors.map((factor, at) => (
             <FactorFields
               key={at}
@@ -136,6 +143,7 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
           <Button
             size="compact-sm"
             variant="default"
+            mt="2xs"
             aria-disabled={!draft.behavior || undefined}
             data-disabled={!draft.behavior}
             onClick={() => draft.behavior && change({ factors: [...draft.factors, NO_FACTOR] })}
@@ -147,6 +155,7 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
         </Fieldset>
         <TextInput
           label="Document in the project"
+          styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
           placeholder={id || 'behaviors/sweeps/name.yaml'}
           value={draft.id}
           onChange={(event) => change({ id: event.currentTarget.value })}
@@ -157,11 +166,11 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
           </Alert>
         )}
         <Group gap="xs">
-          <Button size="compact-sm" type="submit" aria-disabled={isSending || undefined} data-disabled={isSending}>
+          <Button size="xs" type="submit" aria-disabled={isSending || undefined} data-disabled={isSending}>
             {step || 'Make and start'}
           </Button>
           <Button
-            size="compact-sm"
+            size="xs"
             variant="default"
             aria-disabled={isSending || undefined}
             data-disabled={isSending}

@@ -5,7 +5,6 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { intervalText, percent } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 import { ResultTable } from './ResultTable'
-import table from './table.module.css'
 import classes from './sweeps.module.css'
 
 export function OutcomeTable({ outcomes, done }: { readonly outcomes: readonly OutcomeShare[]; readonly done: number }) {
@@ -37,7 +36,7 @@ export function OutcomeTable({ outcomes, done }: { readonly outcomes: readonly O
             <Table.Td ta="right">{each.runs}</Table.Td>
             <Table.Td ta="right">{percent(each.runs / done)}</Table.Td>
             <Table.Td>{intervalText(each.interval)}</Table.Td>
-            <Table.Td className={table.barCell}>
+            <Table.Td w="34%" miw={90}>
               <IntervalBar interval={each.interval} rate={each.runs / done} isBad={!each.success} />
             </Table.Td>
           </Table.Tr>

@@ -35,7 +35,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   return (
     <div ref={ref}>
       <svg
-        className={classes.plot}
+        className={`${classes.drawing} ${classes.plot}`}
         viewBox={`0 0 ${wide} ${HEIGHT}`}
         height={HEIGHT}
         role="img"
@@ -46,7 +46,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
         </clipPath>
         {lines.map((rate) => (
           <g key={rate}>
-            <line className={classes.grid} x1={LEFT} x2={wide - RIGHT} y1={y(rate)} y2={y(rate)} />
+            <line className="grid" x1={LEFT} x2={wide - RIGHT} y1={y(rate)} y2={y(rate)} />
             <text x={LEFT - 7} y={y(rate) + 4} textAnchor="end">
               {Number((100 * rate).toFixed(1))} %
             </text>
@@ -54,7 +54,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
         ))}
         <g clipPath={`url(#${clip})`}>
           <polygon className={classes.band} points={[...upper, ...lower].join(' ')} />
-          <polyline className={classes.rate} points={curve.map((point) => `${x(point.runs)},${y(point.rate)}`).join(' ')} />
+          <polyline className="rate" points={curve.map((point) => `${x(point.runs)},${y(point.rate)}`).join(' ')} />
           {required !== undefined && <line className={classes.required} x1={LEFT} x2={wide - RIGHT} y1={y(required)} y2={y(required)} />}
         </g>
         <text x={LEFT} y={HEIGHT - 9}>
@@ -66,7 +66,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
       </svg>
       <Group gap="2xs" mt="4xs" fz="0.78rem" c="dimmed">
         <Key>
-          <line className={classes.rate} x2={18} y1={5} y2={5} />
+          <line className="rate" x2={18} y1={5} y2={5} />
         </Key>{' '}
         rate
         {last.interval && (
@@ -92,7 +92,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
 
 function Key({ children }: { readonly children: ReactNode }) {
   return (
-    <svg width={18} height={10} aria-hidden>
+    <svg className={classes.drawing} width={18} height={10} aria-hidden>
       {children}
     </svg>
   )

@@ -5,7 +5,6 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { intervalText, keptText, verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
 import { ResultTable } from './ResultTable'
-import table from './table.module.css'
 
 export function Requirements({ requirements }: { readonly requirements: readonly JudgedRequirement[] }) {
   // A success rate alone is told by the badge and the curve.
@@ -31,7 +30,7 @@ export function Requirements({ requirements }: { readonly requirements: readonly
             </Table.Th>
             <Table.Td>{keptText(each)}</Table.Td>
             <Table.Td>{each.interval !== null && intervalText(each.interval)}</Table.Td>
-            <Table.Td className={table.barCell}>
+            <Table.Td w="34%" miw={90}>
               {each.interval !== null && each.runs > 0 && (
                 <IntervalBar interval={each.interval} rate={each.kept / each.runs} isBad={each.verdict === 'failed'} />
               )}

@@ -14,7 +14,8 @@ export function ResultTable({ label, isChosenFrom = false, children }: ResultTab
   return (
     <div className={classes.scroll} tabIndex={0} role="group" aria-label={label}>
       <Table
-        className={`${classes.table} ${isChosenFrom ? classes.chosen : ''}`}
+        className={classes.table ?? ''}
+        {...(isChosenFrom ? { style: { cursor: 'pointer' } } : {})}
         tabularNums
         verticalSpacing="4xs"
         horizontalSpacing="2xs"
@@ -25,5 +26,14 @@ export function ResultTable({ label, isChosenFrom = false, children }: ResultTab
         {children}
       </Table>
     </div>
+  )
+}
+
+/** The head of a table whose columns are plain to see; those who hear the page hear it. */
+export function UnseenHead({ children }: { readonly children: ReactNode }) {
+  return (
+    <Table.Thead pos="absolute" w={1} h={1} style={{ overflow: 'hidden', clipPath: 'inset(50%)' }}>
+      {children}
+    </Table.Thead>
   )
 }

@@ -1,5 +1,5 @@
 /** One run of a sweep: how it ended, with which values, where its time went; and the run itself, executed again. */
-import { Code, ActionIcon, Alert, Anchor, Box, Button, Group, Paper, Title } from '@mantine/core'
+import { ActionIcon, Alert, Anchor, Box, Button, Code, Group, Paper, SimpleGrid, Text, Title } from '@mantine/core'
 import { IconPlayerPlay, IconX } from '@tabler/icons-react'
 import { useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -11,7 +11,6 @@ import { duration } from '../../document/time'
 import { ShrinkRun } from './ShrinkRun'
 import { Note } from './Note'
 import { Chain } from './Note'
-import classes from './sweeps.module.css'
 
 const NODES = 8
 
@@ -55,7 +54,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
       mt="4xs"
       mb="sm"
       bg="var(--canvas)"
-      className={classes.details ?? ''}
+      style={{ scrollMargin: '80px 0 20px' }}
       aria-label={`Run ${number}`}
     >
       <Group gap="xs">
@@ -104,7 +103,7 @@ function Facts({ run }: { readonly run: TrialResult }) {
     .map(([path, time]) => [path, time?.total_s ?? 0] as const)
     .toSorted((left, right) => right[1] - left[1])
   return (
-    <dl className={classes.facts}>
+    <SimpleGrid component="dl" minColWidth="15rem" spacing="lg" verticalSpacing={2} my="2xs" fz="0.82rem">
       <Fact name="duration" value={duration(run.duration_s)} />
       <Fact name="seed" value={String(run.configuration.seed)} />
       {Object.entries(run.configuration.values).map(([address, value]) => (
@@ -119,15 +118,19 @@ function Facts({ run }: { readonly run: TrialResult }) {
       {Object.entries(run.outputs).map(([key, value]) => (
         <Fact key={`output ${key}`} name={`output ${key}`} value={short(value)} />
       ))}
-    </dl>
+    </SimpleGrid>
   )
 }
 
 function Fact({ name, value }: { readonly name: string; readonly value: string }) {
   return (
     <>
-      <dt>{name}</dt>
-      <dd>{value}</dd>
+      <Text component="dt" inherit ff="monospace" c="dimmed" style={{ overflowWrap: 'anywhere' }}>
+        {name}
+      </Text>
+      <Text component="dd" inherit m={0} style={{ fontVariantNumeric: 'tabular-nums' }}>
+        {value}
+      </Text>
     </>
   )
 }

@@ -33,12 +33,12 @@ export function RunScatter({ runs, factors, selected, onSelect }: RunScatterProp
       </Group>
       <Points runs={runs} x={x} y={y} selected={selected} onSelect={onSelect} />
       <Group gap="2xs" mt="4xs" fz="0.78rem" c="dimmed">
-        <svg width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
-          <circle className={classes.good} r={4} />
+        <svg className={classes.drawing} width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
+          <circle className="good" r={4} />
         </svg>{' '}
         succeeded
-        <svg width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
-          <path className={classes.bad} d={CROSS} />
+        <svg className={classes.drawing} width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
+          <path className="bad" d={CROSS} />
         </svg>{' '}
         did not
         <span>Arrow keys go from run to run, Enter chooses.</span>
@@ -107,7 +107,7 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
   return (
     <div ref={ref}>
       <svg
-        className={classes.plot}
+        className={`${classes.drawing} ${classes.plot}`}
         viewBox={`0 0 ${wide} ${HEIGHT}`}
         height={HEIGHT}
         role="listbox"
@@ -118,7 +118,7 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
         onBlur={() => setActive(undefined)}
       >
         <g aria-hidden>
-          <rect className={classes.frame} x={LEFT} y={TOP} width={wide - LEFT - RIGHT} height={HEIGHT - TOP - BOTTOM} />
+          <rect className="frame" x={LEFT} y={TOP} width={wide - LEFT - RIGHT} height={HEIGHT - TOP - BOTTOM} />
           {across.marks.map(({ at, label }, index) => (
             <text key={label} x={px(at)} y={HEIGHT - 10} textAnchor={anchor(index, across.marks.length)}>
               {label}
@@ -145,8 +145,8 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
               onClick={() => onSelect(number)}
             >
               <title>{`#${number} ${labelOf(run)}`}</title>
-              <circle className={classes.reach} r={9} />
-              {run.success ? <circle className={classes.good} r={4} /> : <path className={classes.bad} d={CROSS} />}
+              <circle r={9} />
+              {run.success ? <circle className="good" r={4} /> : <path className="bad" d={CROSS} />}
             </g>
           )
         })}

@@ -10,6 +10,8 @@ import { FIRST_ORDER, labelOf, orderedRuns, short, type RunOrder } from '../../d
 import { ResultTable } from './ResultTable'
 import table from './table.module.css'
 
+/** Columns that are no numbers. */
+const TEXTS = ['number', 'ended', 'cause']
 const FIRST = 15
 const PAGE = 50
 
@@ -76,7 +78,11 @@ function Head({
   const isOwn = order.by === by
   const Arrow = order.isFalling ? IconArrowNarrowDown : IconArrowNarrowUp
   return (
-    <Table.Th scope="col" aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}>
+    <Table.Th
+      scope="col"
+      ta={TEXTS.includes(by) ? 'left' : 'right'}
+      aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}
+    >
       <UnstyledButton
         display="inline-flex"
         fz="inherit"
@@ -119,7 +125,7 @@ function Row({ run, factors, isSelected, onSelect }: RowProps) {
           {labelOf(run)}
         </Group>
       </Table.Td>
-      <Table.Td className={table.reason} title={run.cause}>
+      <Table.Td className={table.cut} maw="24rem" title={run.cause}>
         {run.reason}
       </Table.Td>
       <Table.Td ta="right">{duration(run.duration_s)}</Table.Td>

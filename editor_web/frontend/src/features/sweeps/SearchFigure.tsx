@@ -22,7 +22,7 @@ export function SearchFigure({ figure, selected, onSelect }: SearchFigureProps) 
   return (
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- as above
     <div
-      className={`${classes.figure} ${table.scroll}`}
+      className={`${classes.drawing} ${table.scroll}`}
       tabIndex={0}
       role="group"
       aria-label="How near to failure each run was"

@@ -1,5 +1,5 @@
 /** What is left of a failing run, one factor a row, and saving it as a test case. */
-import { Code, Anchor, Button, Group, Table, TextInput } from '@mantine/core'
+import { Anchor, Button, Code, Group, Table, TextInput } from '@mantine/core'
 import { useState } from 'react'
 import type { Shrunk } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
@@ -87,7 +87,7 @@ function SaveCase({ proposed, onSave }: { readonly proposed: string; readonly on
       }}
     >
       <Group gap="xs" my="3xs">
-        <Button size="compact-sm" type="submit" aria-disabled={isSaving || undefined} data-disabled={isSaving}>
+        <Button size="xs" type="submit" aria-disabled={isSaving || undefined} data-disabled={isSaving}>
           {isSaving ? 'Saving …' : 'Save as a test case'}
         </Button>
         <TextInput

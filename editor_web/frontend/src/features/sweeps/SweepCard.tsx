@@ -2,7 +2,6 @@
 import { Paper, Title } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { ViewBoundary } from '../../components/ViewBoundary'
-import classes from './sweeps.module.css'
 
 export function SweepCard({
   title,
@@ -22,7 +21,7 @@ export function SweepCard({
       miw={0}
       bg="var(--surface)"
       aria-label={title}
-      {...(isWide ? { className: classes.wide ?? '' } : {})}
+      {...(isWide ? { style: { gridColumn: '1 / -1' } } : {})}
     >
       <Title order={2} fz="0.92rem" mb="2xs">
         {title}

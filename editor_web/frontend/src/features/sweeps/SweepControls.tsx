@@ -39,7 +39,7 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
     <>
       {mayOperate && live.status === 'idle' && left > 0 && (
         <Button
-          size="compact-sm"
+          size="xs"
           aria-disabled={isStarting || isOver || undefined}
           data-disabled={isStarting || isOver}
           title={isOver ? `${over}: no run would be executed` : undefined}

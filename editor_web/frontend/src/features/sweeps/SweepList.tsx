@@ -1,5 +1,5 @@
 /** The sweeps of the project with what they have shown, and results that no document asks for. */
-import { Group, List, Progress, Text } from '@mantine/core'
+import { Box, Group, List, Progress, Text } from '@mantine/core'
 import { IconChartDots } from '@tabler/icons-react'
 import type { SweepLine, SweepList as Listed, UndescribedResults } from '../../api/types'
 import { useLive } from '../../api/live'
@@ -12,7 +12,6 @@ import { currentLive, intervalText, percent, rateOf, speedText, sweepName } from
 import { VerdictBadge } from './VerdictBadge'
 import { Mono, Note } from './Note'
 import { shareDone } from './SweepControls'
-import classes from './sweeps.module.css'
 
 export interface SweepListProps {
   readonly listed: Listed
@@ -30,7 +29,7 @@ export function SweepList({ listed, href, onOpen }: SweepListProps) {
     )
   }
   return (
-    <List listStyleType="none" className={classes.list ?? ''} aria-label="Sweeps">
+    <List listStyleType="none" aria-label="Sweeps">
       {listed.sweeps.map((line) => (
         <Line key={line.id} line={line} href={href(line.id)} onOpen={() => onOpen(line.id)} />
       ))}
@@ -43,11 +42,13 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
   const live = currentLive(line, reported)
   const rate = rateOf(live)
   return (
-    <li>
+    <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }}>
       <Group gap="xs">
-        <PageLink href={href} className={classes.name ?? ''} onOpen={onOpen}>
-          {sweepName(line.id)}
-        </PageLink>
+        <Text fw={640} style={{ overflowWrap: 'anywhere' }}>
+          <PageLink href={href} onOpen={onOpen}>
+            {sweepName(line.id)}
+          </PageLink>
+        </Text>
         {live.status !== 'idle' && <StatusBadge look="active" words={live.status} />}
         <VerdictBadge live={live} require={line.require} />
       </Group>
@@ -89,7 +90,7 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
           aria-label={`${live.done} of ${live.planned} runs of ${sweepName(line.id)}`}
         />
       )}
-    </li>
+    </Box>
   )
 }
 
@@ -97,16 +98,16 @@ export function OtherResults({ others }: { readonly others: readonly Undescribed
   return (
     <>
       <Note isQuiet>Of the command line, or of versions before a change. They stay until the file of results is deleted.</Note>
-      <List listStyleType="none" className={classes.list ?? ''} aria-label="Results of no sweep here">
+      <List listStyleType="none" aria-label="Results of no sweep here">
         {others.map((each) => (
-          <li key={each.subject}>
+          <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }} key={each.subject}>
             <Note>
               {each.behavior || 'A version that is not here any more'} <Mono isQuiet>{each.subject.slice(0, 12)}</Mono>
             </Note>
             <Note isQuiet>
               {each.runs} {each.runs === 1 ? 'run' : 'runs'}, {each.successes} succeeded
             </Note>
-          </li>
+          </Box>
         ))}
       </List>
     </>

@@ -2,7 +2,6 @@
 import { Box, Table } from '@mantine/core'
 import type { DurationSpread, NodeTrend } from '../../api/types'
 import { duration } from '../../document/time'
-import styles from './trend.module.css'
 
 interface DurationTableProps {
   readonly whole: DurationSpread
@@ -12,19 +11,14 @@ interface DurationTableProps {
 export function DurationTable({ whole, nodes }: DurationTableProps) {
   return (
     <Box h="100%" style={{ overflow: 'auto' }}>
-      <Table
-        className={styles.table ?? ''}
-        verticalSpacing="4xs"
-        horizontalSpacing="2xs"
-        borderColor="var(--line)"
-        tabularNums
-        stickyHeader
-      >
+      <Table fz="0.82rem" verticalSpacing="4xs" horizontalSpacing="2xs" borderColor="var(--line)" tabularNums stickyHeader>
         <Table.Thead>
           <Table.Tr>
-            <Table.Th scope="col">Node</Table.Th>
+            <Table.Th scope="col" bg="var(--surface)" c="dimmed">
+              Node
+            </Table.Th>
             {['Runs', 'Median', 'Quartiles', 'Least', 'Most', 'Latest'].map((name) => (
-              <Table.Th key={name} scope="col" ta="right">
+              <Table.Th key={name} scope="col" ta="right" bg="var(--surface)" c="dimmed">
                 {name}
               </Table.Th>
             ))}
@@ -46,7 +40,9 @@ function Row({ name, spread }: { readonly name: string; readonly spread: Duratio
   const isOutside = last_s !== null && (last_s < least_s || last_s > most_s)
   return (
     <Table.Tr>
-      <Table.Th scope="row">{name}</Table.Th>
+      <Table.Th scope="row" fw={400} style={{ overflowWrap: 'anywhere' }}>
+        {name}
+      </Table.Th>
       <Table.Td ta="right">{count}</Table.Td>
       <Table.Td ta="right">{duration(median_s)}</Table.Td>
       <Table.Td ta="right">

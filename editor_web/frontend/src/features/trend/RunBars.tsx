@@ -1,5 +1,5 @@
 /** The last runs of a behavior, newest first: a bar as long as the run took, in the colour of its end. */
-import { Box, Checkbox, List, Text } from '@mantine/core'
+import { Box, Checkbox, List, Progress, Text } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
 import { RunBadge } from '../../components/StatusBadge'
@@ -31,9 +31,7 @@ export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) 
               {wallTime(run.started_at_s)}
             </PageLink>
             <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
-            <span className={styles.track} aria-hidden>
-              <span style={{ inlineSize: `${(run.duration_s / longestS) * 100}%`, background: `var(--${endOf(run)})` }} />
-            </span>
+            <Progress w="100%" size="md" value={(run.duration_s / longestS) * 100} color={`var(--${endOf(run)})`} aria-hidden />
             <Text span inherit ta="right" style={{ fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' }}>
               {duration(run.duration_s)}
             </Text>
