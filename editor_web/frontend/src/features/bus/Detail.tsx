@@ -30,7 +30,7 @@ export function Detail({ name, type, doc, onBack, children }: DetailProps) {
           <Title order={3} fz="0.88rem" ff="monospace">
             {name}
           </Title>
-          <Text span c="dimmed">
+          <Text inherit span c="dimmed">
             {type}
           </Text>
         </Group>

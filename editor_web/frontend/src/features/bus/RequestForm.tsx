@@ -16,7 +16,12 @@ interface RequestFormProps {
 }
 
 export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: RequestFormProps) {
-  if (form.problem) return <Text c="var(--failed)">{form.problem}</Text>
+  if (form.problem)
+    return (
+      <Text inherit c="var(--failed)">
+        {form.problem}
+      </Text>
+    )
   if (!form.fields) return <div role="status" aria-label="Loading" />
   return (
     <form

@@ -15,7 +15,7 @@ interface ComparedRunProps {
 
 export function ComparedRun({ side, run, href, onOpen }: ComparedRunProps) {
   return (
-    <Group gap="sm" px="md" py="xs" bg="var(--surface)" role="region" aria-label={`Run on the ${side}`}>
+    <Group gap="sm" px="md" py="xs" bg="var(--surface)" style={{ rowGap: 0 }} role="region" aria-label={`Run on the ${side}`}>
       <Text span inherit fw={620} c="dimmed">
         {side === 'left' ? 'Left' : 'Right'}
       </Text>

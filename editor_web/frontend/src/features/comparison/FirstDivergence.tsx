@@ -14,7 +14,7 @@ export function FirstDivergence({ divergence, onShow }: FirstDivergenceProps) {
     return (
       <Line color="var(--done-soft)">
         <IconEqual size={18} aria-hidden />
-        <Text flex={1} style={{ overflowWrap: 'anywhere' }}>
+        <Text inherit flex={1} style={{ overflowWrap: 'anywhere' }}>
           Both runs visited the same nodes, and each ended in the same way.
         </Text>
       </Line>
@@ -27,7 +27,7 @@ export function FirstDivergence({ divergence, onShow }: FirstDivergenceProps) {
   return (
     <Line color="var(--stopped-soft)">
       <IconGitFork size={18} aria-hidden />
-      <Text flex={1} style={{ overflowWrap: 'anywhere' }}>
+      <Text inherit flex={1} style={{ overflowWrap: 'anywhere' }}>
         <strong>First divergence:</strong> {divergence.text}{' '}
         <Text span inherit c="dimmed">
           ({times.filter(Boolean).join(', ')})

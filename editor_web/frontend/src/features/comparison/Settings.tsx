@@ -31,7 +31,9 @@ export function Settings({ settings, documents }: SettingsProps) {
       )}
       {documents.map((document) => (
         <section key={document.name} aria-label={`Differences of ${document.name}`}>
-          <Text ff="monospace">{document.name}</Text>
+          <Text inherit ff="monospace">
+            {document.name}
+          </Text>
           <Paper
             component="pre"
             withBorder

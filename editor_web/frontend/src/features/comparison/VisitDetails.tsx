@@ -16,7 +16,7 @@ interface VisitDetailsProps {
 
 export function VisitDetails({ visit, data, href, onOpen }: VisitDetailsProps) {
   return (
-    <Box px="md" py="sm">
+    <Box px="md" pb="sm">
       <Title order={3} fz="0.84rem" mt="sm" mb="xs">
         {visit.path}
       </Title>
@@ -45,7 +45,7 @@ function OfRun({ side, visit, href, onOpen }: OfRunProps) {
   const name = side === 'left' ? 'Left' : 'Right'
   if (!visit) {
     return (
-      <Text>
+      <Text inherit>
         <Text span inherit fw={620} c="dimmed">
           {name}
         </Text>{' '}
@@ -64,7 +64,7 @@ function OfRun({ side, visit, href, onOpen }: OfRunProps) {
         Open the {side} run there
       </PageLink>
       {visit.cause && (
-        <Text c="var(--failed)" style={{ overflowWrap: 'anywhere' }}>
+        <Text inherit c="var(--failed)" style={{ overflowWrap: 'anywhere' }}>
           {visit.cause}
         </Text>
       )}

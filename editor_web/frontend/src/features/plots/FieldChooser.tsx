@@ -31,7 +31,14 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
   }
 
   return (
-    <Stack gap="3xs" px="xs" py="2xs" mih={0} fz="0.8rem" style={{ overflowY: 'auto', borderInlineEnd: '1px solid var(--line)' }}>
+    <Stack
+      gap="3xs"
+      px="xs"
+      py="2xs"
+      mih={0}
+      fz="0.8rem"
+      style={{ overflowY: 'auto', border: 'solid var(--line)', borderWidth: '0 1px 1px 0' }}
+    >
       <TextInput
         size="xs"
         aria-label="Find a number"

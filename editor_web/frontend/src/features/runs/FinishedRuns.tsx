@@ -28,6 +28,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
       p={0}
       bg="var(--surface)"
       className={classes.ended ?? ''}
+      style={{ listStyle: 'none' }}
       aria-label="Runs that ended last"
     >
       {runs.map((run) => (
@@ -41,7 +42,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
               {wallTime(run.started_at_s)}, {duration(run.duration_s)}
             </Text>
             {run.cause && (
-              <Text span inherit truncate maw="100%" c={isFailed(run) ? 'var(--failed)' : 'dimmed'} title={run.cause}>
+              <Text span inherit truncate flex="1 1 12rem" c={isFailed(run) ? 'var(--failed)' : 'dimmed'} title={run.cause}>
                 {run.cause}
               </Text>
             )}

@@ -22,7 +22,12 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   const { ref, width } = useElementSize()
   const clip = useId()
   const last = curve.at(-1)
-  if (!last) return <Text c="dimmed">The curve begins with the first run.</Text>
+  if (!last)
+    return (
+      <Text inherit c="dimmed">
+        The curve begins with the first run.
+      </Text>
+    )
   const wide = Math.max(width, 260)
   const least = floorOf(last, required)
   const x = (runs: number) => LEFT + ((wide - LEFT - RIGHT) * runs) / last.runs

@@ -9,8 +9,7 @@ import { RunBadge } from '../../components/StatusBadge'
 import { labelOf, short } from '../../document/sweeps'
 import { duration } from '../../document/time'
 import { ShrinkRun } from './ShrinkRun'
-import { Note } from './Note'
-import { Chain } from './Note'
+import { Chain, Note } from './Note'
 
 const NODES = 8
 

@@ -11,7 +11,7 @@ import { ResultTable } from './ResultTable'
 import table from './table.module.css'
 
 /** Columns that are no numbers. */
-const TEXTS = ['number', 'ended', 'cause']
+const TEXTS = new Set(['number', 'ended', 'cause'])
 const FIRST = 15
 const PAGE = 50
 
@@ -78,11 +78,7 @@ function Head({
   const isOwn = order.by === by
   const Arrow = order.isFalling ? IconArrowNarrowDown : IconArrowNarrowUp
   return (
-    <Table.Th
-      scope="col"
-      ta={TEXTS.includes(by) ? 'left' : 'right'}
-      aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}
-    >
+    <Table.Th scope="col" ta={TEXTS.has(by) ? 'left' : 'right'} aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}>
       <UnstyledButton
         display="inline-flex"
         fz="inherit"

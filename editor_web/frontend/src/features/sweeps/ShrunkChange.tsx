@@ -4,9 +4,8 @@ import { useState } from 'react'
 import type { Shrunk } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { chanceText, proposedCase, shrunkRows } from '../../document/searches'
-import { Note } from './Note'
+import { Chain, Note } from './Note'
 import { ResultTable } from './ResultTable'
-import { Chain } from './Note'
 
 export interface ShrunkChangeProps {
   readonly sweep: string

@@ -44,7 +44,7 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
   return (
     <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }}>
       <Group gap="xs">
-        <Text fw={640} style={{ overflowWrap: 'anywhere' }}>
+        <Text fz="1rem" fw={640} style={{ overflowWrap: 'anywhere' }}>
           <PageLink href={href} onOpen={onOpen}>
             {sweepName(line.id)}
           </PageLink>
