@@ -142,7 +142,7 @@ const Line = memo(
         <span>
           {line.by ? (
             <>
-              <Anchor component="button" type="button" inherit ta="start" onClick={() => onShow(line.by)}>
+              <Anchor c="var(--accent)" component="button" type="button" inherit ta="start" onClick={() => onShow(line.by)}>
                 {line.by}
               </Anchor>
               <Text span inherit c="dimmed">

@@ -65,7 +65,16 @@ export function ComparedRates({
         <Note>
           Broken:{' '}
           {broken.map((run) => (
-            <Anchor key={run} component="button" type="button" inherit mr="2xs" aria-label={`Run ${run}`} onClick={() => onSelect(run)}>
+            <Anchor
+              c="var(--accent)"
+              key={run}
+              component="button"
+              type="button"
+              inherit
+              mr="2xs"
+              aria-label={`Run ${run}`}
+              onClick={() => onSelect(run)}
+            >
               #{run}
             </Anchor>
           ))}

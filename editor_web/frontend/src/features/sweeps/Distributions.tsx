@@ -54,7 +54,7 @@ function Quantities({ group }: { readonly group: QuantileGroup }) {
         </Table.Tbody>
       </ResultTable>
       {rest > 0 && (
-        <Anchor component="button" inherit type="button" onClick={() => setWhole(true)}>
+        <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => setWhole(true)}>
           Show {rest} more
         </Anchor>
       )}

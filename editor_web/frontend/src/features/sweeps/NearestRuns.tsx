@@ -23,7 +23,7 @@ export function NearestRuns({ view, onSelect }: { readonly view: SearchView; rea
         {view.nearest.map((run) => (
           <Table.Tr key={run.configuration.number}>
             <Table.Th scope="row">
-              <Anchor component="button" inherit type="button" onClick={() => onSelect(run.configuration.number)}>
+              <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => onSelect(run.configuration.number)}>
                 #{run.configuration.number}
               </Anchor>
             </Table.Th>

@@ -184,7 +184,7 @@ function Again({
           {recorded.recording && (
             <>
               {' '}
-              <Anchor component="button" inherit type="button" onClick={() => onOpen(recorded.recording)}>
+              <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => onOpen(recorded.recording)}>
                 Open it anyway
               </Anchor>
             </>

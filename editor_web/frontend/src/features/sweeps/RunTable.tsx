@@ -105,6 +105,7 @@ function Row({ run, factors, isSelected, onSelect }: RowProps) {
     <Table.Tr data-selected={isSelected || undefined} onClick={() => onSelect(number)}>
       <Table.Th scope="row">
         <Anchor
+          c="var(--accent)"
           component="button"
           inherit
           type="button"

@@ -107,7 +107,7 @@ function Saved({ file, onOpenSweep }: { readonly file: string; readonly onOpenSw
       <StatusIcon status="done" size={14} />
       <span>
         Saved as{' '}
-        <Anchor component="button" inherit type="button" onClick={() => onOpenSweep(file)}>
+        <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => onOpenSweep(file)}>
           {file}
         </Anchor>
         , which fails until it is mended. pytest collects the folders in <Code>flexcell_sweeps</Code>.
