@@ -1,22 +1,14 @@
 /** The runs of this server, newest first. */
-import { List, NavLink, Text } from '@mantine/core'
+import { List, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
 import type { RunView } from '../../api/types'
-import { Elapsed } from '../../components/Elapsed'
+import { Elapsed, TimeText } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
+import { SideLink } from '../../components/SideLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive, runStateOf, runWords } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
-
-const LOOK = {
-  root: { '--nl-bg': 'var(--accent-soft)', '--nl-hover': 'var(--accent-soft)', '--nl-color': 'var(--text)' },
-  section: { marginInlineEnd: 8 },
-  label: { fontWeight: 550 },
-  description: { '--description-opacity': 1, '--description-color': 'var(--quiet)' },
-}
-/** Digits stay where they are while it goes on. */
-const TIME = { fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' } as const
 
 export interface RunListProps {
   readonly current: string | undefined
@@ -36,22 +28,13 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
       <List listStyleType="none">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
-            <NavLink
-              px="2xs"
-              py={5}
-              bdrs="md"
-              styles={LOOK}
+            <SideLink
               href={href(run.id)}
-              active={run.id === current}
-              aria-current={run.id === current ? 'page' : undefined}
-              leftSection={<StatusIcon status={runStateOf(run).look} size={15} />}
+              isCurrent={run.id === current}
+              icon={<StatusIcon status={runStateOf(run).look} size={15} />}
               label={nameOf(run.behavior)}
               description={`${wallTime(run.started_at_s)} · ${runText(run)}`}
-              onClick={(event) => {
-                if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-                event.preventDefault()
-                onOpen(run.id)
-              }}
+              onOpen={() => onOpen(run.id)}
             />
           </li>
         ))}
@@ -75,11 +58,7 @@ export function RunTime({ run }: { run: RunView }) {
   // The time of a paused run stands.
   if (isActive(run) && run.id === watched) return <Elapsed sinceS={0} />
   if (isActive(run) && run.waits !== 'paused') return <SinceStart startedS={run.started_at_s} />
-  return (
-    <Text span inherit style={TIME}>
-      {duration(run.duration_s)}
-    </Text>
-  )
+  return <TimeText>{duration(run.duration_s)}</TimeText>
 }
 
 /** By the clock on the wall, for runs that are not watched. */
@@ -89,9 +68,5 @@ function SinceStart({ startedS }: { startedS: number }) {
     const timer = setInterval(() => setNow(serverNow()), 1000)
     return () => clearInterval(timer)
   }, [])
-  return (
-    <Text span inherit style={TIME}>
-      {duration(Math.max(0, now - startedS))}
-    </Text>
-  )
+  return <TimeText>{duration(Math.max(0, now - startedS))}</TimeText>
 }
