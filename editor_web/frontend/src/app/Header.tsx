@@ -73,9 +73,8 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
         <PageLink href={RUNS_HREF} className={classes.run} onOpen={onRuns}>
           <StatusIcon status="active" size={14} />
           <span>
-            {active.length} runs
+            {active.length} runs{' '}
             <Text span inherit visibleFrom="xs">
-              {' '}
               active
             </Text>
           </span>
@@ -103,7 +102,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
           </Text>
           {others > 0 && (
             <PageLink href={RUNS_HREF} className={classes.others} title="All active runs" onOpen={onRuns}>
-              + {others}
+              + {others}{' '}
               <Text span inherit visibleFrom="xs">
                 other{others > 1 && 's'}
               </Text>

@@ -49,7 +49,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
 
   return (
     <Flex direction="column" flex={1} mih={0}>
-      <PageHead title="Runs" words={wordsOf(active.length, asking)} isSaid>
+      <PageHead title="Runs" words={wordsOf(active.length, asking)} isStatus>
         <CommandButton
           label="Side by side"
           hint="Graph and log of two runs side by side"

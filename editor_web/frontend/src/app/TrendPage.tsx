@@ -28,7 +28,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
     .toReversed()
   return (
     <Flex direction="column" flex={1} mih={0}>
-      <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isSaid>
+      <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isStatus>
         <NativeSelect
           size="xs"
           aria-label="Number of runs"

@@ -8,14 +8,14 @@ export interface PageHeadProps {
   readonly words?: ReactNode
   /** How it is, right after its name. */
   readonly state?: ReactNode
-  /** Said to those who hear the page when the words change. */
-  readonly isSaid?: boolean
+  /** Are the words read out when they change? */
+  readonly isStatus?: boolean
   readonly children?: ReactNode
 }
 
 const LINE = { borderBottom: '1px solid var(--line)' }
 
-export function PageHead({ title, words, state, isSaid = false, children }: PageHeadProps) {
+export function PageHead({ title, words, state, isStatus = false, children }: PageHeadProps) {
   return (
     <Flex
       component="header"
@@ -33,7 +33,7 @@ export function PageHead({ title, words, state, isSaid = false, children }: Page
           {title}
         </Title>
         {words && (
-          <Text fz="0.84rem" c="var(--quiet)" lineClamp={2} {...(isSaid ? { role: 'status' } : {})}>
+          <Text fz="0.84rem" c="var(--quiet)" lineClamp={2} {...(isStatus ? { role: 'status' } : {})}>
             {words}
           </Text>
         )}

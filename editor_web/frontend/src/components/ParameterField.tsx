@@ -41,7 +41,7 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
           step={stepOf(field)}
           rightSection={
             field.unit ? (
-              <Text size="xs" c="var(--quiet)">
+              <Text span size="xs" c="var(--quiet)">
                 {field.unit}
               </Text>
             ) : undefined

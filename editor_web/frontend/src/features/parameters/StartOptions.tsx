@@ -73,7 +73,7 @@ export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOpt
           value={supervision.lossTimeoutS}
           onChange={(value) => set({ lossTimeoutS: Math.max(0, Number(value) || 0) })}
           rightSection={
-            <Text size="xs" c="var(--quiet)">
+            <Text span size="xs" c="var(--quiet)">
               s
             </Text>
           }
