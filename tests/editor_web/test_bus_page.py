@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,7 @@ from tests.editor_web.fake_plant import FakePlant
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
 WIDE: Size = (1920, 1080)
+OF_BUS = re.compile("^The .+ of the bus$")
 
 
 @pytest.fixture
@@ -48,7 +50,7 @@ def at_bus(
         page.get_by_role("tab", name="Bus").click()
         chooser = page.get_by_label("Part of the bus")
         expect(chooser).to_be_visible()
-        if page.locator("select.bus-kind").count():
+        if page.get_by_role("combobox", name="Part of the bus").count():
             chooser.select_option(label=kind)
         else:
             chooser.get_by_text(kind, exact=True).click()
@@ -57,7 +59,12 @@ def at_bus(
 
 def entry(page: Page, name: str) -> Locator:
     """A row of the list."""
-    return page.locator(".bus-list").get_by_role("button", name=name)
+    return entries(page).and_(page.get_by_role("button", name=name))
+
+
+def entries(page: Page) -> Locator:
+    """All rows of the list."""
+    return page.get_by_role("navigation", name=OF_BUS).get_by_role("button")
 
 
 def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
@@ -77,7 +84,7 @@ def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop
             shop.on_loop(lambda: plant.publish(3.0))
         expect(row).to_contain_text("Hz")
         page.get_by_label("Find on the bus").fill("gripper state")
-        expect(page.locator(".bus-row")).to_have_count(1)
+        expect(entries(page)).to_have_count(1)
         page.get_by_label("Find on the bus").fill("no such thing")
         expect(page.get_by_text("Nothing matches")).to_be_visible()
 
@@ -130,7 +137,7 @@ def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> No
 
     shop.on_loop(fill)
     with at_bus(browser, shop) as page:
-        expect(page.locator(".bus-row")).to_have_count(305)
+        expect(entries(page)).to_have_count(305)
         session: Any = page.context.new_cdp_session(page)
         send = session.send
         # What the page itself works, whatever else the machine does.
@@ -138,7 +145,7 @@ def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> No
         before_s = worked_s(send)
         page.evaluate(
             """() => new Promise((done) => {
-                const find = document.querySelector('.bus-find input')
+                const find = document.querySelector('input[aria-label="Find on the bus"]')
                 const write = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set
                 write.call(find, 'sensor29')
                 find.dispatchEvent(new Event('input', { bubbles: true }))
@@ -146,7 +153,7 @@ def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> No
             })"""
         )
         spent_s = worked_s(send) - before_s
-        expect(page.locator(".bus-row")).to_have_count(11)
+        expect(entries(page)).to_have_count(11)
         assert spent_s < 0.4
 
 
@@ -174,6 +181,6 @@ def test_on_a_phone_the_list_gives_way_to_what_is_chosen(browser: Browser, shop:
     with at_bus(browser, shop, kind="Actions", size=PHONE) as page:
         entry(page, "travel").click()
         expect(page.get_by_role("button", name="Send goal")).to_be_visible()
-        expect(page.locator(".bus-list")).to_be_hidden()
+        expect(page.get_by_role("navigation", name=OF_BUS)).to_be_hidden()
         page.get_by_role("button", name="Back to the list").click()
         expect(entry(page, "travel")).to_be_visible()

@@ -173,7 +173,7 @@ def test_on_a_phone_nothing_stands_out_to_the_side(browser: Browser, shop: Works
     with opened_page(browser, shop.running, "/runs", size=PHONE) as page:
         for path, shown in (
             ("/runs", "article"),
-            (f"/beside/{runs['shift']}/{runs['nap']}", ".run-column [data-node]"),
+            (f"/beside/{runs['shift']}/{runs['nap']}", "section[aria-label='Run on the left'] [data-node]"),
         ):
             page.goto(shop.running.url.rstrip("/") + path)
             expect(page.locator(shown).first).to_be_visible()

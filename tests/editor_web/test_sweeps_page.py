@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from playwright.sync_api import Browser, expect
@@ -32,13 +33,13 @@ def test_a_sweep_is_made_watched_and_a_failing_run_of_it_opened(
             require_accessible(page, "the form of a sweep")
             page.get_by_role("button", name="Make and start").press("Enter")
             expect(page.get_by_role("heading", name="luck", exact=True)).to_be_visible(timeout=GUARD_MS)
-            expect(page.locator(".sweep-progress")).to_contain_text("12 of 12 runs", timeout=GUARD_MS)
+            expect(page.get_by_role("progressbar", name="12 of 12 runs are done")).to_be_visible(timeout=GUARD_MS)
             curve = page.get_by_role("img", name="Success rate after each of 12 runs")
             expect(curve).to_be_visible(timeout=GUARD_MS)
             points = page.get_by_role("listbox", name="Runs by parameters.luck and duration")
             points.press("End")
             points.press("Enter")
-            chosen = page.locator(".sweep-details")
+            chosen = page.get_by_role("region", name=re.compile(r"^Run \d+$"))
             expect(chosen).to_contain_text("missed")
             require_accessible(page, "a sweep with a chosen run")
             page.set_viewport_size({"width": PHONE[0], "height": PHONE[1]})

@@ -3,11 +3,12 @@ import { VisuallyHidden } from '@mantine/core'
 import { Panel } from '../components/Panel'
 import { PastRuns } from '../features/past/PastRuns'
 import { Recordings } from '../features/past/Recordings'
+import classes from '../features/past/past.module.css'
 import { compareHref, LAST_GOOD, recordingHref, runHref, trendHref } from './route'
 
 export function PastRunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   return (
-    <div className="past-page">
+    <div className={classes.page}>
       <VisuallyHidden component="h1">Past runs</VisuallyHidden>
       <Panel title="Past runs">
         <PastRuns

@@ -1,4 +1,5 @@
 /** All active runs at once, each with its commands; those that ended last; and two of them to be compared. */
+import { Box, Flex, SimpleGrid, Title } from '@mantine/core'
 import { IconGitCompare, IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { useData } from '../api/data'
@@ -17,7 +18,6 @@ import { useCommands } from '../features/control/useCommands'
 import { FinishedRuns } from '../features/runs/FinishedRuns'
 import { RunCard } from '../features/runs/RunCard'
 import { nameOf } from '../features/runs/RunList'
-import '../features/runs/runs.css'
 import { InterruptedHere } from './InterruptedHere'
 import { compareHref, sideBySideHref, runHref } from './route'
 import { useBehavior } from './useBehavior'
@@ -48,7 +48,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   }
 
   return (
-    <div className="runs-page">
+    <Flex direction="column" flex={1} mih={0}>
       <PageHead title="Runs" words={wordsOf(active.length, asking)} isStatus>
         <CommandButton
           label="Side by side"
@@ -68,14 +68,14 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
         />
       </PageHead>
       <RefusalLine />
-      <div className="runs-body">
+      <Box flex={1} mih={0} bg="var(--ground)" style={{ overflow: 'auto' }}>
         <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
         {active.length === 0 ? (
           <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is active">
             Choose a behavior in the menu and start it; several go on at once as long as no two need the same arm.
           </Empty>
         ) : (
-          <div className="run-cards">
+          <SimpleGrid minColWidth="min(100%, 26rem)" spacing="sm" p="md">
             {active.map((run) => (
               <LiveOf key={run.id} run={run.id}>
                 <Card
@@ -87,18 +87,18 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
                 />
               </LiveOf>
             ))}
-          </div>
+          </SimpleGrid>
         )}
         {ended.length > 0 && (
           <section aria-labelledby="ended-runs">
-            <h2 id="ended-runs" className="runs-title">
+            <Title order={2} id="ended-runs" mx="md" mt="3xs" mb="2xs" fz="0.82rem" fw={620} c="dimmed">
               Ended last
-            </h2>
+            </Title>
             <FinishedRuns runs={ended} href={runHref} onOpen={(run) => onOpen(runHref(run))} chosen={chosen} onChoose={choose} />
           </section>
         )}
-      </div>
-    </div>
+      </Box>
+    </Flex>
   )
 }
 

@@ -1,5 +1,5 @@
 /** Two runs beside one another, each with its commands, graph and log. */
-import { Box, VisuallyHidden } from '@mantine/core'
+import { Box, Flex, NativeSelect, VisuallyHidden } from '@mantine/core'
 import { IconLayoutColumns } from '@tabler/icons-react'
 import { useEffect, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
@@ -22,7 +22,7 @@ import { useCommands } from '../features/control/useCommands'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { EventLog } from '../features/log/EventLog'
 import { nameOf } from '../features/runs/RunList'
-import '../features/runs/runs.css'
+import styles from '../features/runs/runs.module.css'
 import { Breadcrumb } from './Breadcrumb'
 import classes from './pages.module.css'
 import { sideBySideHref, runHref } from './route'
@@ -47,14 +47,14 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
     />
   )
   return (
-    <div className="beside-page">
+    <Flex direction="column" flex={1} mih={0}>
       <VisuallyHidden component="h1">Two runs side by side</VisuallyHidden>
       <RefusalLine />
       {isNarrow ? (
-        <div className="beside-stack">
+        <Box flex={1} mih={0} style={{ overflow: 'auto' }} data-stacked>
           {column(left, 'left', right)}
           {column(right, 'right', left)}
-        </div>
+        </Box>
       ) : (
         <Group orientation="horizontal" className={classes.work}>
           <Pane id="left-run" defaultSize="50%" minSize="25%">
@@ -66,7 +66,7 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
           </Pane>
         </Group>
       )}
-    </div>
+    </Flex>
   )
 }
 
@@ -96,8 +96,21 @@ function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
     )
   }
   return (
-    <section className="run-column" aria-label={`Run on the ${side}`}>
-      <header className="run-column-head">{choice}</header>
+    <section className={styles.column} aria-label={`Run on the ${side}`}>
+      <Flex
+        component="header"
+        wrap="wrap"
+        align="center"
+        rowGap="4xs"
+        columnGap="xs"
+        mih={46}
+        px="sm"
+        py="3xs"
+        fz="0.84rem"
+        style={{ borderBottom: '1px solid var(--line)' }}
+      >
+        {choice}
+      </Flex>
       {knowsRuns && (
         <Empty icon={<IconLayoutColumns size={26} stroke={1.4} aria-hidden />} title="No run is shown here">
           {id ? 'This server knows no such run; choose another one.' : 'Choose one.'}
@@ -117,8 +130,9 @@ interface RunChoiceProps {
 function RunChoice({ runs, id, side, onChange }: RunChoiceProps) {
   const isKnown = runs.some((run) => run.id === id)
   return (
-    <select
-      className="run-choice"
+    <NativeSelect
+      size="xs"
+      maw="100%"
       aria-label={`Which run on the ${side}`}
       value={isKnown ? id : ''}
       onChange={(event) => onChange(event.currentTarget.value)}
@@ -130,7 +144,7 @@ function RunChoice({ runs, id, side, onChange }: RunChoiceProps) {
           {isActive(run) ? '' : `, ${run.outcome ?? run.status}`}
         </option>
       ))}
-    </select>
+    </NativeSelect>
   )
 }
 
@@ -155,18 +169,29 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
   }
 
   return (
-    <section className="run-column" aria-label={`Run on the ${side}`}>
-      <header className="run-column-head">
+    <section className={styles.column} aria-label={`Run on the ${side}`}>
+      <Flex
+        component="header"
+        wrap="wrap"
+        align="center"
+        rowGap="4xs"
+        columnGap="xs"
+        mih={46}
+        px="sm"
+        py="3xs"
+        fz="0.84rem"
+        style={{ borderBottom: '1px solid var(--line)' }}
+      >
         {choice}
         <Box flex={1} />
         <PageLink href={runHref(run.id)} onOpen={onOpen}>
           Whole page
         </PageLink>
         {isActive(run) && <StopRun commands={commands} />}
-      </header>
+      </Flex>
       {isActive(run) && <RunBar run={run} commands={commands} of={name} />}
       <StatusRow run={run} root={root} commands={commands} onShow={show} of={name} />
-      <Group orientation="vertical" className="run-column-body">
+      <Group orientation="vertical" style={{ flex: 1, minHeight: 0 }}>
         <Pane id={`${side}-graph`} defaultSize="60%" minSize="20%">
           {root ? (
             <Graph

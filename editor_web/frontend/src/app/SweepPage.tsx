@@ -1,6 +1,5 @@
 /** A sweep: how far it is, what it has shown, its runs. The run that is chosen stands in the address. */
-import '../features/sweeps/sweeps.css'
-import { Code } from '@mantine/core'
+import { Code, SimpleGrid, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { useLive } from '../api/live'
 import { useAnswer, useOutdated } from '../api/queryClient'
@@ -17,6 +16,7 @@ import { FailureCount } from '../features/sweeps/FailureCount'
 import { SearchReport } from '../features/sweeps/SearchReport'
 import { SuccessRate, SweepControls, SweepProgress } from '../features/sweeps/SweepControls'
 import { SweepReport } from '../features/sweeps/SweepReport'
+import classes from '../features/sweeps/sweeps.module.css'
 import { VerdictBadge } from '../features/sweeps/VerdictBadge'
 import { behaviorHref, recordingHref, sweepHref, SWEEPS_HREF } from './route'
 
@@ -82,7 +82,7 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
     onOpenSweep: (other: string) => onOpen(sweepHref(other)),
   }
   return (
-    <div className="sweep-page">
+    <div className={classes.page}>
       <PageHead
         title={sweepName(line.id)}
         words={
@@ -101,11 +101,15 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
       >
         <SweepControls sweep={line.id} live={live} mayOperate={mayOperate} broken={broken} />
       </PageHead>
-      <div className="sweep-summary">
+      <SimpleGrid cols={{ base: 1, md: 2 }} spacing="xs" px="md" pt="sm" style={{ alignItems: 'center' }}>
         {live.search ? <FailureCount search={live.search} towards={line.towards} /> : <SuccessRate live={live} />}
         <SweepProgress live={live} />
-      </div>
-      {line.description && <p className="quiet sweep-description">{line.description}</p>}
+      </SimpleGrid>
+      {line.description && (
+        <Text px="md" fz="0.84rem" c="dimmed">
+          {line.description}
+        </Text>
+      )}
       {isSearch(view) ? <SearchReport view={view} runs={runs} {...of} /> : <SweepReport view={view} runs={runs} {...of} />}
     </div>
   )

@@ -1,5 +1,5 @@
 /** All sweeps of the project, and making a new one. */
-import '../features/sweeps/sweeps.css'
+import { Box, Title } from '@mantine/core'
 import { useLive } from '../api/live'
 import { useAnswer } from '../api/queryClient'
 import { sweepQueries } from '../api/sweeps'
@@ -7,28 +7,31 @@ import { Empty } from '../components/Empty'
 import { PageHead } from '../components/PageHead'
 import { NewSweep } from '../features/sweeps/NewSweep'
 import { OtherResults, SweepList } from '../features/sweeps/SweepList'
+import classes from '../features/sweeps/sweeps.module.css'
 import { sweepHref } from './route'
 
 export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void }) {
   const { value, problem } = useAnswer(sweepQueries.list())
   const mayOperate = useLive((s) => s.role) === 'operator'
   return (
-    <div className="sweep-page">
+    <div className={classes.page}>
       <PageHead title="Sweeps" words="How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors">
         {mayOperate && value && <NewSweep taken={value.sweeps.map((each) => each.id)} onMade={(id) => onOpen(sweepHref(id))} />}
       </PageHead>
       {problem && <Empty title="The sweeps cannot be read">{problem}</Empty>}
       {!value && !problem && <div role="status" aria-label="Loading" />}
       {value && (
-        <div className="sweep-list-page">
+        <Box maw="60rem" px="md" pt="3xs" pb="xl">
           <SweepList listed={value} href={sweepHref} onOpen={(id) => onOpen(sweepHref(id))} />
           {value.others.length > 0 && (
             <section aria-label="Other results">
-              <h2 className="sweep-subtitle">Results that belong to none of them</h2>
+              <Title order={2} fz="0.8rem" mt="sm">
+                Results that belong to none of them
+              </Title>
               <OtherResults others={value.others} />
             </section>
           )}
-        </div>
+        </Box>
       )}
     </div>
   )

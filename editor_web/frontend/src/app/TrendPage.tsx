@@ -1,5 +1,5 @@
 /** The last runs of a behavior: how many succeeded, how long they and their nodes took, and two of them to compare. */
-import { Button, NativeSelect } from '@mantine/core'
+import { Button, Flex, NativeSelect } from '@mantine/core'
 import { IconGitCompare } from '@tabler/icons-react'
 import { useState } from 'react'
 import { comparisonQueries } from '../api/comparison'
@@ -27,7 +27,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
     .filter((id) => chosen.includes(id))
     .toReversed()
   return (
-    <div className={styles.page}>
+    <Flex direction="column" flex={1} mih={0}>
       <PageHead title={`Last runs of ${behavior}`} words={countText(trend)} isStatus>
         <NativeSelect
           size="xs"
@@ -64,6 +64,6 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
           </Panel>
         </div>
       )}
-    </div>
+    </Flex>
   )
 }

@@ -1,7 +1,6 @@
 /** The skill bus: topics with their traffic and messages, services, actions and parameters with forms, who holds what. */
 import { lookup } from '../../document/dict'
-import './bus.css'
-import { CloseButton, SegmentedControl, TextInput } from '@mantine/core'
+import { Box, CloseButton, Group, NativeSelect, SegmentedControl, TextInput } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconPlugConnected, IconSearch } from '@tabler/icons-react'
 import { useEffect, useMemo, useRef, useState } from 'react'
@@ -20,6 +19,7 @@ import { leave } from './requests'
 import { SkillView } from './SkillView'
 import { TopicView } from './TopicView'
 import type { BusListing, BusMetricsFrame, MessageFrame } from '../../api/types'
+import classes from './bus.module.css'
 
 interface BusProps {
   readonly session: { readonly role: string } | undefined
@@ -54,12 +54,12 @@ export function Bus({ session }: BusProps) {
   }
 
   const tools = (
-    <div className="bus-tools" ref={toolsRef}>
+    <Group ref={toolsRef} gap="xs" wrap="nowrap" flex={1} miw={0}>
       {width === 0 ? null : width > 520 ? (
         <SegmentedControl size="xs" aria-label="Part of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value)} />
       ) : (
-        <select
-          className="bus-kind"
+        <NativeSelect
+          size="xs"
           aria-label="Part of the bus"
           value={kind}
           onChange={(event) => setKind(event.currentTarget.value as BusKind)}
@@ -69,9 +69,8 @@ export function Bus({ session }: BusProps) {
               {each.label}
             </option>
           ))}
-        </select>
+        </NativeSelect>
       )}
-      <span className="spacer" />
       <TextInput
         size="xs"
         aria-label="Find on the bus"
@@ -80,22 +79,24 @@ export function Bus({ session }: BusProps) {
         rightSection={search && <CloseButton size="xs" aria-label="Clear" onClick={() => setSearch('')} />}
         value={search}
         onChange={(event) => setSearch(event.currentTarget.value)}
-        className="bus-find"
+        flex="0 1 180px"
+        miw={70}
+        ml="auto"
       />
-    </div>
+    </Group>
   )
 
   function body() {
     if (problem) return <Empty title="The bus cannot be shown">{problem}</Empty>
-    if (!board) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!board) return <div role="status" aria-label="Loading" />
     if (kind === 'leases') return <Leases leases={traffic?.leases ?? []} goals={traffic?.goals ?? []} search={search} />
     if (entries.length === 0) return <NoEntries kind={kind} isFiltered={all.length > 0} />
     return (
-      <div className={`bus-halves${name ? ' has-choice' : ''}`}>
+      <div className={classes.halves} data-chosen={name ? true : undefined}>
         <EntryList key={kind} entries={entries} kind={kind} chosen={name} onChoose={choose} traffic={traffic?.topics} />
-        <div className="bus-detail" role="group" aria-label="What is selected" tabIndex={0}>
+        <Box className={classes.detail} px="sm" pt="2xs" pb="sm" role="group" aria-label="What is selected" tabIndex={0}>
           {detail(board)}
-        </div>
+        </Box>
       </div>
     )
   }
@@ -116,8 +117,8 @@ export function Bus({ session }: BusProps) {
   }
 
   return (
-    <Panel title="Bus" tools={tools} className="bus-panel">
-      <div className="bus" ref={area}>
+    <Panel title="Bus" tools={tools}>
+      <div className={classes.bus} ref={area}>
         {body()}
       </div>
     </Panel>

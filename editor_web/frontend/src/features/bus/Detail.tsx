@@ -1,6 +1,8 @@
 /** The frame of what is shown of one entry: its name, what it is for, and the way back where there is little room. */
+import { ActionIcon, Code, Group, Stack, Text, Title } from '@mantine/core'
 import { IconArrowLeft } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
+import classes from './bus.module.css'
 
 interface DetailProps {
   readonly name: string
@@ -12,27 +14,53 @@ interface DetailProps {
 
 export function Detail({ name, type, doc, onBack, children }: DetailProps) {
   return (
-    <section className="bus-entry" aria-label={name}>
-      <header className="bus-entry-head">
-        <button type="button" className="bus-back" aria-label="Back to the list" onClick={onBack}>
-          <IconArrowLeft size={15} aria-hidden />
-        </button>
-        <h3 className="mono">{name}</h3>
-        <span className="quiet">{type}</span>
-      </header>
-      {doc && <p className="bus-doc">{inCode(doc)}</p>}
-      {children}
+    <section aria-label={name}>
+      <Stack gap="2xs" maw="46rem">
+        <Group gap="xs" align="baseline">
+          <ActionIcon
+            className={classes.back ?? ''}
+            variant="default"
+            size="md"
+            style={{ alignSelf: 'center' }}
+            aria-label="Back to the list"
+            onClick={onBack}
+          >
+            <IconArrowLeft size={15} aria-hidden />
+          </ActionIcon>
+          <Title order={3} fz="0.88rem" ff="monospace">
+            {name}
+          </Title>
+          <Text inherit span c="dimmed">
+            {type}
+          </Text>
+        </Group>
+        {doc && (
+          <Text fz="0.8rem" style={{ whiteSpace: 'pre-line' }}>
+            {inCode(doc)}
+          </Text>
+        )}
+        {children}
+      </Stack>
     </section>
   )
 }
 
 /** Names between backticks as code. */
 function inCode(doc: string): ReactNode {
-  return doc.split('`').map((part, index) => (index % 2 === 1 ? <code key={index}>{part}</code> : part))
+  return doc.split('`').map((part, index) => (index % 2 === 1 ? <Code key={index}>{part}</Code> : part))
 }
 
 /** Why something cannot be sent, or what it may do. */
 export function Caution({ mayChange, words }: { mayChange: boolean; words: string }) {
-  if (!mayChange) return <p className="quiet">You may look only: log in with the operator token to send anything.</p>
-  return <p className="bus-caution">{words}</p>
+  if (!mayChange)
+    return (
+      <Text fz="0.8rem" c="dimmed">
+        You may look only: log in with the operator token to send anything.
+      </Text>
+    )
+  return (
+    <Text fz="0.8rem" px="xs" py="4xs" bg="var(--stopped-soft)" c="var(--stopped)" style={{ borderInlineStart: '3px solid' }}>
+      {words}
+    </Text>
+  )
 }

@@ -1,10 +1,12 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
+import { Box, Group, List, Title, UnstyledButton } from '@mantine/core'
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
 import { byNamespace, type Named } from '../../document/busTree'
 import { nameOfPath } from '../../document/path'
 import { ageText, rateText } from './words'
 import type { TopicMetrics } from '../../api/types'
+import classes from './bus.module.css'
 
 interface EntryListProps {
   readonly entries: readonly Named[]
@@ -18,18 +20,34 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
   const groups = useMemo(() => byNamespace(entries), [entries])
   const isTopics = kind === 'topics'
   return (
-    <nav className="bus-list" aria-label={`The ${kind} of the bus`}>
+    <nav className={classes.list} aria-label={`The ${kind} of the bus`}>
       {isTopics && (
-        <p className="bus-columns" aria-hidden>
-          <span className="grow">Topic</span>
-          <span>Rate</span>
-          <span>Latest</span>
-        </p>
+        <Group
+          pos="sticky"
+          top={0}
+          gap="2xs"
+          px="sm"
+          py={3}
+          wrap="nowrap"
+          bg="var(--surface)"
+          fz="0.72rem"
+          c="dimmed"
+          style={{ zIndex: 1 }}
+          aria-hidden
+        >
+          <Box component="span" flex={1}>
+            Topic
+          </Box>
+          <span className={classes.figure}>Rate</span>
+          <span className={classes.figure}>Latest</span>
+        </Group>
       )}
       {groups.map((group) => (
-        <section key={group.name} className="bus-group" aria-label={group.name || 'Without a namespace'}>
-          <h3>{group.name || 'without a namespace'}</h3>
-          <ul className="plain-list">
+        <section key={group.name} aria-label={group.name || 'Without a namespace'}>
+          <Title order={3} px="sm" pt="4xs" pb={2} fz="0.74rem" fw={620} c="dimmed">
+            {group.name || 'without a namespace'}
+          </Title>
+          <List listStyleType="none" fz="inherit">
             {group.entries.map((entry) => (
               <Row
                 key={entry.name}
@@ -41,7 +59,7 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
                 age={isTopics ? ageText(lookup(traffic, entry.name)) : undefined}
               />
             ))}
-          </ul>
+          </List>
         </section>
       ))}
     </nav>
@@ -62,12 +80,14 @@ const Row = memo(
   function Row({ name, type, isChosen, onChoose, rate, age }: RowProps) {
     return (
       <li>
-        <button type="button" className="bus-row" aria-current={isChosen} onClick={() => onChoose(name)}>
-          <span className="bus-name">{nameOfPath(name)}</span>
-          <span className="bus-type">{type}</span>
-          {rate !== undefined && <span className="bus-figure">{rate}</span>}
-          {age !== undefined && <span className="bus-figure">{age}</span>}
-        </button>
+        <UnstyledButton className={classes.row} aria-current={isChosen} onClick={() => onChoose(name)}>
+          <span className={classes.name}>{nameOfPath(name)}</span>
+          <Box component="span" flex={1}>
+            {type}
+          </Box>
+          {rate !== undefined && <span className={classes.figure}>{rate}</span>}
+          {age !== undefined && <span className={classes.figure}>{age}</span>}
+        </UnstyledButton>
       </li>
     )
   },

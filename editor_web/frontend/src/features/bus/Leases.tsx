@@ -1,4 +1,5 @@
 /** Who commands which resource, from which node and with which goal, and since when. */
+import { Box, Table, Text } from '@mantine/core'
 import { IconLockOpen } from '@tabler/icons-react'
 import { Empty } from '../../components/Empty'
 import { duration } from '../../document/time'
@@ -21,30 +22,44 @@ export function Leases({ leases, goals, search }: LeasesProps) {
     )
   }
   return (
-    <div className="lease-scroll" tabIndex={0} role="region" aria-label="Resource leases">
-      <table className="lease-table">
-        <thead>
-          <tr>
-            <th scope="col">Resource</th>
-            <th scope="col">Held by</th>
-            <th scope="col">Node</th>
-            <th scope="col">Goal</th>
-            <th scope="col">For</th>
-          </tr>
-        </thead>
-        <tbody>
+    <Box h="100%" style={{ overflow: 'auto' }} tabIndex={0} role="region" aria-label="Resource leases">
+      <Table
+        styles={{ th: { background: 'var(--surface)', color: 'var(--quiet)' } }}
+        fz="0.8rem"
+        verticalSpacing="4xs"
+        horizontalSpacing="sm"
+        borderColor="var(--line)"
+        stickyHeader
+        tabularNums
+      >
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th scope="col">Resource</Table.Th>
+            <Table.Th scope="col">Held by</Table.Th>
+            <Table.Th scope="col">Node</Table.Th>
+            <Table.Th scope="col">Goal</Table.Th>
+            <Table.Th scope="col">For</Table.Th>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
           {shown.map((lease) => (
-            <tr key={lease.resource}>
-              <td className="mono">{lease.resource}</td>
-              <td>{holderText(lease.run)}</td>
-              <td className="mono">{lease.node || <span className="quiet">kept by the run</span>}</td>
-              <td className="mono">{goalText(lease, goals)}</td>
-              <td className="lease-time">{duration(lease.held_s)}</td>
-            </tr>
+            <Table.Tr key={lease.resource}>
+              <Table.Td ff="monospace">{lease.resource}</Table.Td>
+              <Table.Td>{holderText(lease.run)}</Table.Td>
+              <Table.Td ff="monospace">
+                {lease.node || (
+                  <Text span inherit c="dimmed">
+                    kept by the run
+                  </Text>
+                )}
+              </Table.Td>
+              <Table.Td ff="monospace">{goalText(lease, goals)}</Table.Td>
+              <Table.Td style={{ whiteSpace: 'nowrap' }}>{duration(lease.held_s)}</Table.Td>
+            </Table.Tr>
           ))}
-        </tbody>
-      </table>
-    </div>
+        </Table.Tbody>
+      </Table>
+    </Box>
   )
 }
 

@@ -1,6 +1,6 @@
 /** The form of a request or message, made from its JSON Schema, with what was answered or refused below it. */
 import { lookup, type Dict } from '../../document/dict'
-import { Alert } from '@mantine/core'
+import { Alert, Fieldset, Group, Stack, Text } from '@mantine/core'
 import { IconAlertCircle } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
 import { ParameterField } from '../../components/ParameterField'
@@ -16,11 +16,15 @@ interface RequestFormProps {
 }
 
 export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: RequestFormProps) {
-  if (form.problem) return <p className="is-failed">{form.problem}</p>
-  if (!form.fields) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (form.problem)
+    return (
+      <Text inherit c="var(--failed)">
+        {form.problem}
+      </Text>
+    )
+  if (!form.fields) return <div role="status" aria-label="Loading" />
   return (
     <form
-      className="bus-form"
       aria-label={label}
       noValidate
       onSubmit={(event) => {
@@ -29,24 +33,32 @@ export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: Re
         if (request) onSend(request)
       }}
     >
-      <fieldset disabled={isOff}>
-        {form.fields.length === 0 && <p className="quiet">It takes nothing.</p>}
-        {form.fields.map((field) => (
-          <ParameterField
-            key={field.name}
-            field={field}
-            value={lookup(form.values, field.name)}
-            problem={lookup(form.problems, field.name)}
-            onChange={(value) => form.set(field.name, value)}
-          />
-        ))}
-      </fieldset>
-      <div className="bus-buttons">{buttons}</div>
-      {refusal && (
-        <Alert color="red" variant="light" p="xs" icon={<IconAlertCircle size={16} aria-hidden />} role="alert">
-          {refusal}
-        </Alert>
-      )}
+      <Stack gap="xs">
+        <Fieldset variant="unstyled" disabled={isOff}>
+          <Stack gap="xs">
+            {form.fields.length === 0 && (
+              <Text fz="0.8rem" c="dimmed">
+                It takes nothing.
+              </Text>
+            )}
+            {form.fields.map((field) => (
+              <ParameterField
+                key={field.name}
+                field={field}
+                value={lookup(form.values, field.name)}
+                problem={lookup(form.problems, field.name)}
+                onChange={(value) => form.set(field.name, value)}
+              />
+            ))}
+          </Stack>
+        </Fieldset>
+        <Group gap="2xs">{buttons}</Group>
+        {refusal && (
+          <Alert color="red" variant="light" p="xs" icon={<IconAlertCircle size={16} aria-hidden />} role="alert">
+            {refusal}
+          </Alert>
+        )}
+      </Stack>
     </form>
   )
 }

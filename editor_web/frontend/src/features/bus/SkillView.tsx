@@ -1,6 +1,6 @@
 /** One service or action: what it is for, the form of its request, and its answer or course. */
 import { lookup } from '../../document/dict'
-import { Button, Progress } from '@mantine/core'
+import { Button, Paper, Progress, Text } from '@mantine/core'
 import { IconPlayerStopFilled, IconSend } from '@tabler/icons-react'
 import { busQueries } from '../../api/bus'
 import { useAnswer } from '../../api/queryClient'
@@ -65,23 +65,33 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
 function CourseView({ course }: { course: RequestProgress }) {
   const share = shareOf(course.feedback)
   return (
-    <div className="bus-course" role="status" aria-label="Course of the request">
-      <p className={`bus-status is-${course.status}`}>
+    <Paper withBorder px="xs" py="2xs" role="status" aria-label="Course of the request">
+      <Text fz="0.8rem" fw={600} c={STATUS_COLORS[course.status] ?? 'var(--active)'}>
         {STATUS_WORDS[course.status] ?? course.status}
         {course.cause && `: ${course.cause}`}
-      </p>
+      </Text>
       {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Progress" />}
       {course.feedback !== null && course.feedback !== undefined && !isOver(course) && (
         <ValueTree label="Feedback" value={course.feedback} />
       )}
       {course.answer !== null && course.answer !== undefined && <ValueTree label="Answer" value={course.answer} />}
-    </div>
+    </Paper>
   )
 }
 
 function shareOf(feedback: unknown): number | undefined {
   const share = typeof feedback === 'object' && feedback !== null ? (feedback as { progress?: unknown }).progress : undefined
   return typeof share === 'number' ? Math.min(1, Math.max(0, share)) : undefined
+}
+
+/** What goes on is active. */
+const STATUS_COLORS: Readonly<Record<string, string>> = {
+  held: 'var(--text)',
+  succeeded: 'var(--done)',
+  answered: 'var(--done)',
+  aborted: 'var(--failed)',
+  rejected: 'var(--failed)',
+  canceled: 'var(--stopped)',
 }
 
 const STATUS_WORDS: Readonly<Record<string, string>> = {

@@ -1,6 +1,6 @@
 /** One topic: its traffic, its newest message as it changes, and a form where it takes commands. */
 import type { Dict } from '../../document/dict'
-import { Button } from '@mantine/core'
+import { Button, Group, Text } from '@mantine/core'
 import { IconSend } from '@tabler/icons-react'
 import { useState } from 'react'
 import { bus, busQueries } from '../../api/bus'
@@ -25,14 +25,16 @@ export function TopicView({ facts, message, traffic, mayChange, onBack }: TopicV
   const heard = traffic?.subscribers === 1 ? '1 subscriber' : `${traffic?.subscribers ?? 0} subscribers`
   return (
     <Detail name={facts.name} type={facts.type} doc={facts.doc} onBack={onBack}>
-      <p className="bus-traffic">
+      <Group gap="md" fz="0.8rem" c="dimmed" style={{ fontVariantNumeric: 'tabular-nums' }}>
         {[rateText(traffic), `latest ${ageText(traffic)}`, heard].map((words) => (
           <span key={words}>{words}</span>
         ))}
-      </p>
+      </Group>
       {facts.takes_commands && <Publish topic={facts.name} mayChange={mayChange} />}
       {message?.problem ? (
-        <p className="quiet">There is no message: {message.problem}.</p>
+        <Text fz="0.8rem" c="dimmed">
+          There is no message: {message.problem}.
+        </Text>
       ) : (
         message && <ValueTree label={`Latest message of ${facts.name}`} value={message.value} open={2} />
       )}

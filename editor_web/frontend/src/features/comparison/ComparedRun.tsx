@@ -1,10 +1,10 @@
 /** One of the two runs: which it is, how it ended, and the way to its page. */
+import { Group, Text } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
 import { RunBadge } from '../../components/StatusBadge'
 import type { Side } from '../../document/comparison'
 import { duration, wallTime } from '../../document/time'
-import styles from './comparison.module.css'
 
 interface ComparedRunProps {
   readonly side: Side
@@ -15,20 +15,22 @@ interface ComparedRunProps {
 
 export function ComparedRun({ side, run, href, onOpen }: ComparedRunProps) {
   return (
-    <section className={styles.run} aria-label={`Run on the ${side}`}>
-      <span className={styles.side}>{side === 'left' ? 'Left' : 'Right'}</span>
+    <Group gap="sm" px="md" py="xs" bg="var(--surface)" style={{ rowGap: 0 }} role="region" aria-label={`Run on the ${side}`}>
+      <Text span inherit fw={620} c="dimmed">
+        {side === 'left' ? 'Left' : 'Right'}
+      </Text>
       <PageLink href={href} onOpen={onOpen}>
         {run.behavior}
       </PageLink>
       <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
-      <span className="quiet">
+      <Text span inherit c="dimmed">
         {wallTime(run.started_at_s)}, {duration(run.duration_s)}
-      </span>
+      </Text>
       {run.cause && (
-        <span className={styles.cause} title={run.cause}>
+        <Text span inherit truncate flex="1 1 100%" c="var(--failed)" title={run.cause}>
           {run.cause}
-        </span>
+        </Text>
       )}
-    </section>
+    </Group>
   )
 }

@@ -1,30 +1,35 @@
 /** Values of two runs beside one another. */
+import { Table } from '@mantine/core'
 import type { ValueChange } from '../../api/types'
 import styles from './comparison.module.css'
 
 export function DifferenceTable({ rows, name }: { readonly rows: readonly ValueChange[]; readonly name: string }) {
   return (
-    <table className={styles.table}>
-      <thead>
-        <tr>
-          <th scope="col">{name}</th>
-          <th scope="col">Left</th>
-          <th scope="col">Right</th>
-        </tr>
-      </thead>
-      <tbody>
+    <Table className={styles.table ?? ''} verticalSpacing="4xs" horizontalSpacing="2xs" borderColor="var(--line)" tabularNums stickyHeader>
+      <Table.Thead>
+        <Table.Tr>
+          <Table.Th scope="col">{name}</Table.Th>
+          <Table.Th scope="col">Left</Table.Th>
+          <Table.Th scope="col">Right</Table.Th>
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody>
         {rows.map((each) => (
-          <tr key={each.at}>
-            <th scope="row">{each.at}</th>
+          <Table.Tr key={each.at}>
+            <Table.Th scope="row">{each.at}</Table.Th>
             <Value text={each.left} />
             <Value text={each.right} />
-          </tr>
+          </Table.Tr>
         ))}
-      </tbody>
-    </table>
+      </Table.Tbody>
+    </Table>
   )
 }
 
 function Value({ text }: { readonly text: string | null }) {
-  return <td className={text === null ? styles.missing : styles.value}>{text ?? 'nothing'}</td>
+  return (
+    <Table.Td {...(text === null ? { c: 'dimmed' } : { ff: 'monospace' })} style={{ overflowWrap: 'anywhere' }}>
+      {text ?? 'nothing'}
+    </Table.Td>
+  )
 }

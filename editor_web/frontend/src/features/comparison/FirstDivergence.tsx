@@ -1,8 +1,8 @@
 /** Where two runs first differ, in words, and the jump there. */
-import { Button } from '@mantine/core'
+import { Button, Group, Text } from '@mantine/core'
 import { IconArrowDown, IconEqual, IconGitFork } from '@tabler/icons-react'
+import type { ReactNode } from 'react'
 import type { Divergence } from '../../api/types'
-import styles from './comparison.module.css'
 
 interface FirstDivergenceProps {
   readonly divergence: Divergence | null
@@ -12,10 +12,12 @@ interface FirstDivergenceProps {
 export function FirstDivergence({ divergence, onShow }: FirstDivergenceProps) {
   if (!divergence) {
     return (
-      <div className={`${styles.divergence} ${styles.isNone}`} role="status">
+      <Line color="var(--done-soft)">
         <IconEqual size={18} aria-hidden />
-        <p>Both runs visited the same nodes, and each ended in the same way.</p>
-      </div>
+        <Text inherit flex={1} style={{ overflowWrap: 'anywhere' }}>
+          Both runs visited the same nodes, and each ended in the same way.
+        </Text>
+      </Line>
     )
   }
   const times = [
@@ -23,14 +25,25 @@ export function FirstDivergence({ divergence, onShow }: FirstDivergenceProps) {
     divergence.right_s !== null && `right at ${divergence.right_s.toFixed(2)} s`,
   ]
   return (
-    <div className={styles.divergence} role="status">
+    <Line color="var(--stopped-soft)">
       <IconGitFork size={18} aria-hidden />
-      <p>
-        <strong>First divergence:</strong> {divergence.text} <span className="quiet">({times.filter(Boolean).join(', ')})</span>
-      </p>
+      <Text inherit flex={1} style={{ overflowWrap: 'anywhere' }}>
+        <strong>First divergence:</strong> {divergence.text}{' '}
+        <Text span inherit c="dimmed">
+          ({times.filter(Boolean).join(', ')})
+        </Text>
+      </Text>
       <Button variant="default" size="xs" leftSection={<IconArrowDown size={14} aria-hidden />} onClick={onShow}>
         Show
       </Button>
-    </div>
+    </Line>
+  )
+}
+
+function Line({ color, children }: { readonly color: string; readonly children: ReactNode }) {
+  return (
+    <Group gap="sm" wrap="nowrap" px="md" py="xs" bg={color} style={{ borderBottom: '1px solid var(--line)' }} role="status">
+      {children}
+    </Group>
   )
 }

@@ -1,5 +1,5 @@
 /** How often each node was visited in two runs, and how long all its visits took. */
-import { Checkbox } from '@mantine/core'
+import { Box, Checkbox, Table } from '@mantine/core'
 import { useState } from 'react'
 import type { NodeDifference } from '../../api/types'
 import { signed } from '../../document/comparison'
@@ -12,46 +12,53 @@ export function NodeDurations({ nodes }: { readonly nodes: readonly NodeDifferen
   const rows = isByDifference ? nodes.toSorted((one, other) => Math.abs(change(other)) - Math.abs(change(one))) : nodes
   return (
     <>
-      <div className={styles.details}>
+      <Box px="md" py="sm">
         <Checkbox
           size="xs"
           label="Largest difference first"
           checked={isByDifference}
           onChange={(event) => setByDifference(event.currentTarget.checked)}
         />
-      </div>
-      <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">Node</th>
-            <th scope="col" className={styles.number}>
+      </Box>
+      <Table
+        className={styles.table ?? ''}
+        verticalSpacing="4xs"
+        horizontalSpacing="2xs"
+        borderColor="var(--line)"
+        tabularNums
+        stickyHeader
+      >
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th scope="col">Node</Table.Th>
+            <Table.Th scope="col" ta="right">
               Visits
-            </th>
-            <th scope="col" className={styles.number}>
+            </Table.Th>
+            <Table.Th scope="col" ta="right">
               Left
-            </th>
-            <th scope="col" className={styles.number}>
+            </Table.Th>
+            <Table.Th scope="col" ta="right">
               Right
-            </th>
-            <th scope="col" className={styles.number}>
+            </Table.Th>
+            <Table.Th scope="col" ta="right">
               Difference
-            </th>
-          </tr>
-        </thead>
-        <tbody>
+            </Table.Th>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
           {rows.map((each) => (
-            <tr key={each.path}>
-              <th scope="row">{each.path}</th>
-              <td className={styles.number}>
+            <Table.Tr key={each.path}>
+              <Table.Th scope="row">{each.path}</Table.Th>
+              <Table.Td ta="right">
                 {each.visits_left === each.visits_right ? each.visits_left : `${each.visits_left} → ${each.visits_right}`}
-              </td>
-              <td className={styles.number}>{each.visits_left > 0 ? duration(each.duration_left_s) : ''}</td>
-              <td className={styles.number}>{each.visits_right > 0 ? duration(each.duration_right_s) : ''}</td>
-              <td className={styles.number}>{signed(change(each))}</td>
-            </tr>
+              </Table.Td>
+              <Table.Td ta="right">{each.visits_left > 0 ? duration(each.duration_left_s) : ''}</Table.Td>
+              <Table.Td ta="right">{each.visits_right > 0 ? duration(each.duration_right_s) : ''}</Table.Td>
+              <Table.Td ta="right">{signed(change(each))}</Table.Td>
+            </Table.Tr>
           ))}
-        </tbody>
-      </table>
+        </Table.Tbody>
+      </Table>
     </>
   )
 }

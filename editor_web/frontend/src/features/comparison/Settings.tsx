@@ -1,7 +1,7 @@
 /** What two runs were started with, and the lines in which their documents differ. */
+import { Box, Paper, Text, Title } from '@mantine/core'
 import type { DocumentDifference, ValueChange } from '../../api/types'
 import { DifferenceTable } from './DifferenceTable'
-import styles from './comparison.module.css'
 
 interface SettingsProps {
   readonly settings: readonly ValueChange[]
@@ -10,27 +10,56 @@ interface SettingsProps {
 
 export function Settings({ settings, documents }: SettingsProps) {
   return (
-    <div className={styles.details}>
-      <h3>Parameters, inputs, seed, clock</h3>
+    <Box px="md" pb="sm">
+      <Title order={3} fz="0.84rem" mt="sm" mb="xs">
+        Parameters, inputs, seed, clock
+      </Title>
       {settings.length === 0 ? (
-        <p className="quiet">Both runs were started with the same.</p>
+        <Text fz="sm" c="dimmed">
+          Both runs were started with the same.
+        </Text>
       ) : (
         <DifferenceTable rows={settings} name="Setting" />
       )}
-      <h3>Documents</h3>
-      {documents.length === 0 && <p className="quiet">Both runs executed the same version.</p>}
+      <Title order={3} fz="0.84rem" mt="sm" mb="xs">
+        Documents
+      </Title>
+      {documents.length === 0 && (
+        <Text fz="sm" c="dimmed">
+          Both runs executed the same version.
+        </Text>
+      )}
       {documents.map((document) => (
         <section key={document.name} aria-label={`Differences of ${document.name}`}>
-          <p className="mono">{document.name}</p>
-          <pre className={styles.lines} tabIndex={0} aria-label={`Lines of ${document.name}`}>
+          <Text inherit ff="monospace">
+            {document.name}
+          </Text>
+          <Paper
+            component="pre"
+            withBorder
+            radius="sm"
+            m={0}
+            p="xs"
+            bg="var(--ground)"
+            fz="0.78rem"
+            style={{ overflow: 'auto' }}
+            tabIndex={0}
+            aria-label={`Lines of ${document.name}`}
+          >
             {document.lines.map((line, index) => (
-              <div key={index} className={line.startsWith('+') ? styles.added : line.startsWith('-') ? styles.removed : undefined}>
+              <Text key={index} component="span" inherit display="block" {...colorOf(line)}>
                 {line}
-              </div>
+              </Text>
             ))}
-          </pre>
+          </Paper>
         </section>
       ))}
-    </div>
+    </Box>
   )
+}
+
+/** What only the left run has is red, what only the right one has green. */
+function colorOf(line: string): { readonly c?: string } {
+  if (line.startsWith('+')) return { c: 'var(--done)' }
+  return line.startsWith('-') ? { c: 'var(--failed)' } : {}
 }

@@ -1,10 +1,10 @@
 /** One aligned visit: when it was in each run, why it ended so, and the values that it read and wrote. */
+import { Box, Text, Title } from '@mantine/core'
 import type { AlignedVisit, DataDifference, Visit } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
 import { endWords, type Side } from '../../document/comparison'
 import { duration } from '../../document/time'
 import { DifferenceTable } from './DifferenceTable'
-import styles from './comparison.module.css'
 
 interface VisitDetailsProps {
   readonly visit: AlignedVisit
@@ -16,17 +16,23 @@ interface VisitDetailsProps {
 
 export function VisitDetails({ visit, data, href, onOpen }: VisitDetailsProps) {
   return (
-    <div className={styles.details}>
-      <h3>{visit.path}</h3>
+    <Box px="md" pb="sm">
+      <Title order={3} fz="0.84rem" mt="sm" mb="xs">
+        {visit.path}
+      </Title>
       <OfRun side="left" visit={visit.left} href={href} onOpen={onOpen} />
       <OfRun side="right" visit={visit.right} href={href} onOpen={onOpen} />
-      <h3>Values that differ</h3>
+      <Title order={3} fz="0.84rem" mt="sm" mb="xs">
+        Values that differ
+      </Title>
       {data.length === 0 ? (
-        <p className="quiet">It read and wrote the same values.</p>
+        <Text fz="sm" c="dimmed">
+          It read and wrote the same values.
+        </Text>
       ) : (
         <DifferenceTable rows={data.map((each) => ({ ...each, at: `${each.kind} ${each.at}` }))} name="Value" />
       )}
-    </div>
+    </Box>
   )
 }
 
@@ -39,20 +45,29 @@ function OfRun({ side, visit, href, onOpen }: OfRunProps) {
   const name = side === 'left' ? 'Left' : 'Right'
   if (!visit) {
     return (
-      <p>
-        <span className={styles.side}>{name}</span> not entered
-      </p>
+      <Text inherit>
+        <Text span inherit fw={620} c="dimmed">
+          {name}
+        </Text>{' '}
+        not entered
+      </Text>
     )
   }
   const target = href(side, visit.end_s ?? visit.start_s, visit.path)
   return (
-    <div className={styles.ofRun}>
-      <span className={styles.side}>{name}</span> {endWords(visit)}, from {duration(visit.start_s)}{' '}
-      {visit.end_s !== null && `to ${duration(visit.end_s)} `}
+    <Box my="xs">
+      <Text span inherit fw={620} c="dimmed">
+        {name}
+      </Text>{' '}
+      {endWords(visit)}, from {duration(visit.start_s)} {visit.end_s !== null && `to ${duration(visit.end_s)} `}
       <PageLink href={target} onOpen={() => onOpen(target)}>
         Open the {side} run there
       </PageLink>
-      {visit.cause && <p className={styles.reason}>{visit.cause}</p>}
-    </div>
+      {visit.cause && (
+        <Text inherit c="var(--failed)" style={{ overflowWrap: 'anywhere' }}>
+          {visit.cause}
+        </Text>
+      )}
+    </Box>
   )
 }

@@ -1,5 +1,5 @@
 /** The visits of two runs, aligned: how each ended, how long it took, and where they differ. */
-import { Button, Switch, UnstyledButton } from '@mantine/core'
+import { Box, Button, Group, Switch, Table, Text, UnstyledButton } from '@mantine/core'
 import { useEffect, useRef, useState } from 'react'
 import type { AlignedVisit, Visit } from '../../api/types'
 import { Panel } from '../../components/Panel'
@@ -28,42 +28,53 @@ export function VisitTable({ visits, leftOut, selected, onSelect }: VisitTablePr
     <Panel
       title="Visits"
       tools={
-        <div className={styles.tools}>
-          {leftOut > 0 && <span className="quiet">{leftOut} more are alike</span>}
+        <Group gap="sm" flex={1} justify="end">
+          {leftOut > 0 && (
+            <Text span inherit c="dimmed">
+              {leftOut} more are alike
+            </Text>
+          )}
           <Switch size="xs" label="Only differences" checked={isShort} onChange={(event) => setShort(event.currentTarget.checked)} />
-        </div>
+        </Group>
       }
     >
-      <div className={styles.scroll} role="region" tabIndex={0} aria-label="Table of visits">
-        <table className={styles.table}>
-          <thead>
-            <tr>
-              <th scope="col">Node</th>
-              <th scope="col">Left</th>
-              <th scope="col" className={styles.number}>
+      <Box h="100%" style={{ overflow: 'auto' }} role="region" tabIndex={0} aria-label="Table of visits">
+        <Table
+          className={styles.table ?? ''}
+          verticalSpacing="4xs"
+          horizontalSpacing="2xs"
+          borderColor="var(--line)"
+          tabularNums
+          stickyHeader
+        >
+          <Table.Thead>
+            <Table.Tr>
+              <Table.Th scope="col">Node</Table.Th>
+              <Table.Th scope="col">Left</Table.Th>
+              <Table.Th scope="col" ta="right">
                 took
-              </th>
-              <th scope="col">Right</th>
-              <th scope="col" className={styles.number}>
+              </Table.Th>
+              <Table.Th scope="col">Right</Table.Th>
+              <Table.Th scope="col" ta="right">
                 took
-              </th>
-              <th scope="col" className={styles.number}>
+              </Table.Th>
+              <Table.Th scope="col" ta="right">
                 Difference
-              </th>
-            </tr>
-          </thead>
-          <tbody>
+              </Table.Th>
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
             {rows.slice(0, reach).map(({ visit, index }) => (
               <Row key={index} visit={visit} isSelected={index === selected} onSelect={() => onSelect(index)} />
             ))}
-          </tbody>
-        </table>
+          </Table.Tbody>
+        </Table>
         {rows.length > reach && (
           <Button variant="default" size="xs" m="sm" onClick={() => setMost(reach + PAGE)}>
             Show more of {rows.length}
           </Button>
         )}
-      </div>
+      </Box>
     </Panel>
   )
 }
@@ -86,31 +97,35 @@ function Row({
   const number = (left ?? right)?.visit ?? 1
   const depth = depthOf(path)
   const name = nameOfPath(path)
-  const classes = [isDifferent(visit) && styles.isDifferent, isSelected && styles.isSelected]
   return (
-    <tr ref={row} className={classes.filter(Boolean).join(' ') || undefined} aria-selected={isSelected}>
-      <th scope="row" style={{ paddingInlineStart: `${0.6 + depth}em` }}>
-        <UnstyledButton className={styles.name} aria-pressed={isSelected} aria-label={`${path}, visit ${number}`} onClick={onSelect}>
+    <Table.Tr ref={row} data-different={isDifferent(visit) || undefined} aria-selected={isSelected}>
+      <Table.Th scope="row" style={{ paddingInlineStart: `${0.6 + depth}em` }}>
+        <UnstyledButton fz="inherit" aria-pressed={isSelected} aria-label={`${path}, visit ${number}`} onClick={onSelect}>
           {name}
-          {number > 1 && <span className="quiet"> {number}</span>}
+          {number > 1 && (
+            <Text span inherit c="dimmed">
+              {' '}
+              {number}
+            </Text>
+          )}
         </UnstyledButton>
-      </th>
+      </Table.Th>
       <End visit={left} />
-      <td className={styles.number}>{took === undefined ? '' : duration(took)}</td>
+      <Table.Td ta="right">{took === undefined ? '' : duration(took)}</Table.Td>
       <End visit={right} />
-      <td className={styles.number}>{tookRight === undefined ? '' : duration(tookRight)}</td>
-      <td className={styles.number}>{signed(differenceS(took, tookRight))}</td>
-    </tr>
+      <Table.Td ta="right">{tookRight === undefined ? '' : duration(tookRight)}</Table.Td>
+      <Table.Td ta="right">{signed(differenceS(took, tookRight))}</Table.Td>
+    </Table.Tr>
   )
 }
 
 function End({ visit }: { readonly visit: Visit | null }) {
   return (
-    <td title={visit?.cause || undefined}>
-      <span className={`${styles.end} ${visit ? '' : styles.missing}`}>
+    <Table.Td title={visit?.cause || undefined}>
+      <Group gap="4xs" wrap="nowrap" {...(visit ? {} : { c: 'dimmed' })}>
         {visit && <StatusIcon status={statusOf(visit.status)} size={13} />}
         {endWords(visit)}
-      </span>
-    </td>
+      </Group>
+    </Table.Td>
   )
 }

@@ -1,6 +1,5 @@
 /** The userdata of the shown run: every value of every container, who wrote it last and when. */
-import './data.css'
-import { CloseButton, TextInput } from '@mantine/core'
+import { Anchor, Badge, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
 import { IconDatabase, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
 import { useData } from '../../api/data'
@@ -12,6 +11,7 @@ import { ValueTree } from '../../components/ValueTree'
 import { shownScopes, withChanges, type Scopes } from '../../document/userdata'
 import { inShort, isShort } from '../../document/values'
 import type { UserdataRecord } from '../../api/types'
+import classes from './data.module.css'
 
 interface DataProps {
   readonly run: { readonly id: string } | undefined
@@ -38,8 +38,7 @@ export function Data({ run, onShow }: DataProps) {
   const scopes = useMemo(() => shownScopes(current?.scopes ?? {}, search), [current, search])
 
   const tools = (
-    <div className="data-tools">
-      <span className="spacer" />
+    <Group flex={1} justify="end" miw={0}>
       <TextInput
         size="xs"
         aria-label="Find in the data"
@@ -48,14 +47,15 @@ export function Data({ run, onShow }: DataProps) {
         rightSection={search && <CloseButton size="xs" aria-label="Clear" onClick={() => setSearch('')} />}
         value={search}
         onChange={(event) => setSearch(event.currentTarget.value)}
-        className="data-find"
+        flex="0 1 180px"
+        miw={70}
       />
-    </div>
+    </Group>
   )
 
   function body() {
     if (!run) return <NoData title="No run is shown">Start the behavior; the userdata of its states appears here.</NoData>
-    if (!current) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!current) return <div role="status" aria-label="Loading" />
     if (current.problem) return <NoData title="The data cannot be shown">{current.problem}</NoData>
     if (scopes.length === 0 && search) return <NoData title="Nothing matches">Clear the search to see everything.</NoData>
     if (scopes.length === 0)
@@ -65,18 +65,34 @@ export function Data({ run, onShow }: DataProps) {
         </NoData>
       )
     return (
-      <div className="data-scroll" tabIndex={0} role="region" aria-label="Userdata">
+      <div className={classes.scroll} tabIndex={0} role="region" aria-label="Userdata">
         {scopes.map((scope) => (
-          <section key={scope.path} className={`data-scope${scope.isOpen ? '' : ' is-over'}`} aria-label={scope.name}>
-            <h3>
-              <span className="mono">{scope.name}</span>
-              {!scope.isOpen && <span className="data-over">over</span>}
-            </h3>
-            <ul className="plain-list">
+          <section key={scope.path} aria-label={scope.name}>
+            <Title
+              order={3}
+              pos="sticky"
+              top={0}
+              bg="var(--surface)"
+              style={{ zIndex: 1 }}
+              px="sm"
+              py="4xs"
+              fz="0.76rem"
+              fw={620}
+              c="dimmed"
+              ff="monospace"
+            >
+              {scope.name}
+              {!scope.isOpen && (
+                <Badge component="span" variant="default" size="xs" tt="none" ml="2xs">
+                  over
+                </Badge>
+              )}
+            </Title>
+            <List listStyleType="none" fz="inherit">
               {scope.lines.map((line) => (
                 <Line key={line.key} name={line.key} line={line} onShow={onShow} />
               ))}
-            </ul>
+            </List>
           </section>
         ))}
       </div>
@@ -84,8 +100,8 @@ export function Data({ run, onShow }: DataProps) {
   }
 
   return (
-    <Panel title="Data" tools={tools} className="data-panel">
-      <div className="data" ref={area}>
+    <Panel title="Data" tools={tools}>
+      <div className={classes.data} ref={area}>
         {body()}
       </div>
     </Panel>
@@ -110,28 +126,34 @@ interface LineProps {
 const Line = memo(
   function Line({ name, line, onShow }: LineProps) {
     return (
-      <li className="data-line">
-        <span className="data-key mono">{name}</span>
-        <span className="data-value" key={line.writes} data-written={line.writes > 0 || undefined}>
+      <li className={classes.line}>
+        <Text span inherit ff="monospace" fw={600}>
+          {name}
+        </Text>
+        <span className={classes.value} key={line.writes} data-written={line.writes > 0 || undefined}>
           {isShort(line.value) ? (
-            <span className="mono">{inShort(line.value)}</span>
+            <Text span inherit ff="monospace">
+              {inShort(line.value)}
+            </Text>
           ) : (
             <ValueTree label={`Value of ${name}`} value={line.value} open={0} />
           )}
         </span>
-        <span className="data-by">
+        <span>
           {line.by ? (
             <>
-              <button type="button" className="link" onClick={() => onShow(line.by)}>
+              <Anchor c="var(--accent)" component="button" type="button" inherit ta="start" onClick={() => onShow(line.by)}>
                 {line.by}
-              </button>
-              <span className="quiet">
+              </Anchor>
+              <Text span inherit c="dimmed">
                 {' '}
                 at {line.at_s.toFixed(2)} s{line.writes > 1 && `, ×${line.writes}`}
-              </span>
+              </Text>
             </>
           ) : (
-            <span className="quiet">from the start</span>
+            <Text span inherit c="dimmed">
+              from the start
+            </Text>
           )}
         </span>
       </li>

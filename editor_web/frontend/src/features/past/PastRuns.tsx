@@ -1,16 +1,17 @@
 /** The runs of the journal: found by words, by how they ended, by the day; failures are one press away. */
-import './past.css'
-import { ActionIcon, Button, Checkbox, CloseButton, Group, Menu, TextInput } from '@mantine/core'
+import { ActionIcon, Alert, Box, Button, Checkbox, CloseButton, Group, List, Menu, Text, TextInput } from '@mantine/core'
 import { useDebouncedValue } from '@mantine/hooks'
 import { IconDots, IconGitCompare, IconHistory, IconSearch } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useId, useState } from 'react'
 import { useLastAnswer } from '../../api/queryClient'
 import { pastQueries, type PastQuery } from '../../api/timeline'
 import type { PastRunBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
+import { PageLink } from '../../components/PageLink'
 import { RunBadge } from '../../components/StatusBadge'
 import { duration, wallTime } from '../../document/time'
 import { dayEndS, dayStartS } from './days'
+import classes from './past.module.css'
 
 const KINDS = [
   ['all', 'All'],
@@ -47,11 +48,11 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
   }
 
   return (
-    <div className="past-runs">
-      <div className="past-filters">
+    <Box h="100%" px="md" pt="sm" pb="lg" style={{ overflow: 'auto' }}>
+      <Group gap="xs">
         <TextInput
           size="sm"
-          className="past-find"
+          flex="1 1 220px"
           aria-label="Find a run"
           placeholder="Behavior, outcome, cause or run"
           leftSection={<IconSearch size={15} aria-hidden />}
@@ -59,25 +60,31 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
           value={text}
           onChange={(event) => setText(event.currentTarget.value)}
         />
-        <label className="past-day">
-          from <input type="date" value={since} max={until || undefined} onChange={(event) => setSince(event.currentTarget.value)} />
-        </label>
-        <label className="past-day">
-          to <input type="date" value={until} min={since || undefined} onChange={(event) => setUntil(event.currentTarget.value)} />
-        </label>
-      </div>
-      <div className="past-kinds" role="group" aria-label="How they ended">
+        <Day label="from" value={since} {...(until && { max: until })} onChange={setSince} />
+        <Day label="to" value={until} {...(since && { min: since })} onChange={setUntil} />
+      </Group>
+      <Group gap="3xs" mt="sm" mb="2xs" role="group" aria-label="How they ended">
         {KINDS.map(([id, words]) => (
-          <button key={id} type="button" className={`past-kind is-${id}`} aria-pressed={kind === id} onClick={() => setKind(id)}>
-            {words} <span className="past-count">{found?.counts[id] ?? 0}</span>
-          </button>
+          <Button
+            key={id}
+            size="compact-sm"
+            radius="xl"
+            variant={kind === id ? 'light' : 'default'}
+            aria-pressed={kind === id}
+            onClick={() => setKind(id)}
+          >
+            {words}{' '}
+            <Text span inherit fw={620} ml="4xs" c={id === 'failed' ? 'var(--failed)' : 'var(--quiet)'}>
+              {found?.counts[id] ?? 0}
+            </Text>
+          </Button>
         ))}
-      </div>
+      </Group>
       <CompareChosen chosen={chosen} onCompare={onCompare} onNone={() => setChosen([])} />
       {problem && (
-        <p className="past-problem" role="alert">
+        <Alert color="red" variant="light" p="xs" my="xs">
           {problem}
-        </p>
+        </Alert>
       )}
       {found?.runs.length === 0 && (
         <Empty icon={<IconHistory size={26} stroke={1.4} aria-hidden />} title={isFiltered ? 'No run matches' : 'No past runs'}>
@@ -86,58 +93,97 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
             : 'Every run that is started here is kept in the journal and listed on this page.'}
         </Empty>
       )}
-      <ul className="plain-list" aria-label="Past runs">
+      <List listStyleType="none" aria-label="Past runs">
         {found?.runs.map((run) => (
-          <li key={run.id} className="past-row">
-            <Checkbox
-              size="xs"
-              aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
-              checked={chosen.some((each) => each.id === run.id)}
-              onChange={(event) => choose(run, event.currentTarget.checked)}
-            />
-            <Item run={run} href={href(run.id)} onOpen={() => onOpen(href(run.id))} />
-            <Menu position="bottom-end" withinPortal>
-              <Menu.Target>
-                <ActionIcon variant="subtle" color="gray" size="sm" aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}>
-                  <IconDots size={15} />
-                </ActionIcon>
-              </Menu.Target>
-              <Menu.Dropdown>
-                <Menu.Item onClick={() => onCompare(undefined, run.id)}>Compare with the last good run</Menu.Item>
-                <Menu.Item onClick={() => onOpen(trendHref(run.behavior))}>Last runs of {run.behavior}</Menu.Item>
-              </Menu.Dropdown>
-            </Menu>
-          </li>
+          <Box component="li" key={run.id} style={{ borderBottom: '1px solid var(--line)' }}>
+            <Group gap="xs" align="start" wrap="nowrap">
+              <Checkbox
+                mt="xs"
+                size="xs"
+                aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                checked={chosen.some((each) => each.id === run.id)}
+                onChange={(event) => choose(run, event.currentTarget.checked)}
+              />
+              <Item run={run} href={href(run.id)} onOpen={() => onOpen(href(run.id))} />
+              <Menu position="bottom-end" withinPortal>
+                <Menu.Target>
+                  <ActionIcon
+                    mt="xs"
+                    variant="subtle"
+                    color="gray"
+                    size="sm"
+                    aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                  >
+                    <IconDots size={15} />
+                  </ActionIcon>
+                </Menu.Target>
+                <Menu.Dropdown>
+                  <Menu.Item onClick={() => onCompare(undefined, run.id)}>Compare with the last good run</Menu.Item>
+                  <Menu.Item onClick={() => onOpen(trendHref(run.behavior))}>Last runs of {run.behavior}</Menu.Item>
+                </Menu.Dropdown>
+              </Menu>
+            </Group>
+          </Box>
         ))}
-      </ul>
+      </List>
       {found && found.total > found.runs.length && (
-        <button type="button" className="command past-more" onClick={() => setLimit(Math.min(200, limit + PAGE))} disabled={limit >= 200}>
+        <Button
+          size="compact-sm"
+          variant="default"
+          mt="sm"
+          mx="auto"
+          display="block"
+          onClick={() => setLimit(Math.min(200, limit + PAGE))}
+          disabled={limit >= 200}
+        >
           {limit >= 200 ? `${found.total - found.runs.length} older ones: narrow the search` : `Show more of ${found.total}`}
-        </button>
+        </Button>
       )}
-    </div>
+    </Box>
   )
 }
 
 function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: () => void }) {
   return (
-    <a
-      className="past-item"
-      href={href}
-      onClick={(event) => {
-        if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-        event.preventDefault()
-        onOpen()
-      }}
-    >
-      <span className="past-item-name">{run.behavior}</span>
-      <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
-      <span className="quiet past-item-facts">
+    <PageLink className={classes.item ?? ''} href={href} onOpen={onOpen}>
+      <Group gap="sm" wrap="nowrap" justify="space-between">
+        <Text span inherit truncate fw={620}>
+          {run.behavior}
+        </Text>
+        <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
+      </Group>
+      <Text span display="block" fz="0.78rem" c="dimmed">
         {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
-      </span>
-      <span className="quiet mono past-item-id">{run.id}</span>
-      {run.cause && <span className={`past-item-cause${run.failed ? '' : ' quiet'}`}>{run.cause}</span>}
-    </a>
+      </Text>
+      <Text span display="block" fz="0.72rem" ff="monospace" c="dimmed">
+        {run.id}
+      </Text>
+      {run.cause && (
+        <Text span fz="0.78rem" lineClamp={2} c={run.failed ? 'var(--failed)' : 'dimmed'}>
+          {run.cause}
+        </Text>
+      )}
+    </PageLink>
+  )
+}
+
+interface DayProps {
+  readonly label: string
+  readonly value: string
+  readonly min?: string
+  readonly max?: string
+  readonly onChange: (day: string) => void
+}
+
+function Day({ label, onChange, ...of }: DayProps) {
+  const id = useId()
+  return (
+    <Group gap="3xs" wrap="nowrap">
+      <Text component="label" htmlFor={id} fz="0.8rem" c="dimmed">
+        {label}
+      </Text>
+      <TextInput id={id} type="date" size="xs" {...of} onChange={(event) => onChange(event.currentTarget.value)} />
+    </Group>
   )
 }
 
@@ -160,11 +206,11 @@ function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
       >
         Compare
       </Button>
-      <span className="quiet">
+      <Text span inherit c="dimmed">
         {right
           ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}`
           : 'Select a second run.'}
-      </span>
+      </Text>
       <Button size="xs" variant="subtle" color="gray" onClick={onNone}>
         Select none
       </Button>

@@ -1,12 +1,14 @@
 /** The recordings that lie in the project. */
-import './past.css'
+import { Alert, Box, List, Text } from '@mantine/core'
 import { IconFileAnalytics } from '@tabler/icons-react'
 import { useAnswer } from '../../api/queryClient'
 import { pastQueries } from '../../api/timeline'
 import type { RecordingFile } from '../../api/types'
 import { Empty } from '../../components/Empty'
+import { PageLink } from '../../components/PageLink'
 import { wallTime } from '../../document/time'
 import { nameOfPath } from '../../document/path'
+import classes from './past.module.css'
 
 export interface RecordingsProps {
   readonly href: (path: string) => string
@@ -16,53 +18,51 @@ export interface RecordingsProps {
 export function Recordings({ href, onOpen }: RecordingsProps) {
   const { value: files, problem } = useAnswer(pastQueries.recordings())
   return (
-    <div className="past-runs">
+    <Box h="100%" px="md" pt="sm" pb="lg" style={{ overflow: 'auto' }}>
       {problem && (
-        <p className="past-problem" role="alert">
+        <Alert color="red" variant="light" p="xs" my="xs">
           {problem}
-        </p>
+        </Alert>
       )}
       {files?.length === 0 && (
         <Empty icon={<IconFileAnalytics size={26} stroke={1.4} aria-hidden />} title="No recordings">
           Record a run with <code>flexcell run --record FILE.mcap</code>; recordings anywhere in the project are listed here.
         </Empty>
       )}
-      <ul className="plain-list" aria-label="Recordings">
+      <List listStyleType="none" aria-label="Recordings">
         {files?.map((file) => (
-          <li key={file.path}>
+          <Box component="li" key={file.path} style={{ borderBottom: '1px solid var(--line)' }}>
             {file.problem ? (
-              <div className="past-item">
+              <div className={classes.item}>
                 <Named file={file} />
-                <span className="past-item-cause">{file.problem}</span>
+                <Text span fz="0.78rem" lineClamp={2} c="var(--failed)">
+                  {file.problem}
+                </Text>
               </div>
             ) : (
-              <a
-                className="past-item"
-                href={href(file.path)}
-                onClick={(event) => {
-                  if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-                  event.preventDefault()
-                  onOpen(file.path)
-                }}
-              >
+              <PageLink className={classes.item ?? ''} href={href(file.path)} onOpen={() => onOpen(file.path)}>
                 <Named file={file} />
-              </a>
+              </PageLink>
             )}
-          </li>
+          </Box>
         ))}
-      </ul>
-    </div>
+      </List>
+    </Box>
   )
 }
 
 function Named({ file }: { file: RecordingFile }) {
   return (
     <>
-      <span className="past-item-name">{file.behavior || nameOfPath(file.path)}</span>
-      <span className="quiet past-item-facts">
+      <Text span inherit truncate fw={620} display="block">
+        {file.behavior || nameOfPath(file.path)}
+      </Text>
+      <Text span display="block" fz="0.78rem" c="dimmed">
         {wallTime(file.started_at_s)} · {size(file.size_bytes)}
-      </span>
-      <span className="quiet mono past-item-id">{file.path}</span>
+      </Text>
+      <Text span display="block" fz="0.72rem" ff="monospace" c="dimmed" style={{ overflowWrap: 'anywhere' }}>
+        {file.path}
+      </Text>
     </>
   )
 }

@@ -1,5 +1,5 @@
 /** The numbers of all topics as a tree to choose from: topics, their fields, rows at once. */
-import { Checkbox, CloseButton, TextInput } from '@mantine/core'
+import { Badge, Box, Button, Checkbox, CloseButton, Group, List, Stack, Text, TextInput } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useState } from 'react'
 import { idOf, rowsOf, shownTopics, type FieldRow } from './fields'
@@ -31,7 +31,14 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
   }
 
   return (
-    <div className="field-chooser">
+    <Stack
+      gap="3xs"
+      px="xs"
+      py="2xs"
+      mih={0}
+      fz="0.8rem"
+      style={{ overflowY: 'auto', border: 'solid var(--line)', borderWidth: '0 1px 1px 0' }}
+    >
       <TextInput
         size="xs"
         aria-label="Find a number"
@@ -41,20 +48,43 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
         value={search}
         onChange={(event) => setSearch(event.currentTarget.value)}
       />
-      {isFull && <p className="quiet">{MOST_CURVES} curves are the most.</p>}
-      {shown.length === 0 && <p className="quiet">Nothing matches.</p>}
-      <ul className="plain-list field-topics" aria-label="Numbers of topics">
+      {isFull && (
+        <Text inherit c="dimmed">
+          {MOST_CURVES} curves are the most.
+        </Text>
+      )}
+      {shown.length === 0 && (
+        <Text inherit c="dimmed">
+          Nothing matches.
+        </Text>
+      )}
+      <List listStyleType="none" fz="inherit" aria-label="Numbers of topics">
         {shown.map((each) => {
           const isOpen = search !== '' || opened.has(each.topic)
           const count = each.fields.filter((field) => chosen.includes(idOf(each.topic, field))).length
           const Chevron = isOpen ? IconChevronDown : IconChevronRight
           return (
             <li key={each.topic}>
-              <button type="button" className="field-topic" aria-expanded={isOpen} onClick={() => fold(each.topic)}>
-                <Chevron size={13} aria-hidden />
-                <span>{each.topic}</span>
-                {count > 0 && <span className="tab-count">{count}</span>}
-              </button>
+              <Button
+                variant="subtle"
+                color="gray"
+                c="var(--text)"
+                size="compact-xs"
+                justify="start"
+                fullWidth
+                leftSection={<Chevron size={13} aria-hidden />}
+                rightSection={
+                  count > 0 && (
+                    <Badge component="span" size="sm" variant="light">
+                      {count}
+                    </Badge>
+                  )
+                }
+                aria-expanded={isOpen}
+                onClick={() => fold(each.topic)}
+              >
+                {each.topic}
+              </Button>
               {isOpen &&
                 rowsOf(each).map((row) => (
                   <Row key={row.name} topic={each.topic} row={row} chosen={chosen} isFull={isFull} onToggle={toggle} />
@@ -62,8 +92,8 @@ export const FieldChooser = memo(function FieldChooser({ topics, chosen, onChoos
             </li>
           )
         })}
-      </ul>
-    </div>
+      </List>
+    </Stack>
   )
 })
 
@@ -80,12 +110,17 @@ function Row({ topic, row, chosen, isFull, onToggle }: RowProps) {
   const on = ids.filter((id) => chosen.includes(id)).length
   const isWhole = row.fields.length > 1
   return (
-    <div className="field-row">
+    <Box pl="lg" pt={3} pb="4xs">
       <Checkbox
         size="xs"
         label={
           <>
-            {isWhole ? row.name : (row.fields[0]?.label ?? row.name)} {row.unit && <span className="quiet">{row.unit}</span>}
+            {isWhole ? row.name : (row.fields[0]?.label ?? row.name)}{' '}
+            {row.unit && (
+              <Text span inherit c="dimmed">
+                {row.unit}
+              </Text>
+            )}
           </>
         }
         aria-label={isWhole ? `All of ${row.name} of ${topic}` : `${row.fields[0]?.label ?? row.name} of ${topic}`}
@@ -95,27 +130,27 @@ function Row({ topic, row, chosen, isFull, onToggle }: RowProps) {
         onChange={(event) => onToggle(ids, event.currentTarget.checked)}
       />
       {isWhole && (
-        <div className="field-parts">
+        <Group gap="4xs" pl="lg" pt="4xs">
           {row.fields.map((field, index) => {
             const id = ids[index] ?? ''
             const isOn = chosen.includes(id)
             const word = field.label.slice(row.name.length).trim()
             return (
-              <button
+              <Button
                 key={id}
-                type="button"
-                className="field-part"
+                size="compact-xs"
+                variant={isOn ? 'light' : 'default'}
                 aria-pressed={isOn}
                 aria-label={`${field.label} of ${topic}`}
                 disabled={isFull && !isOn}
                 onClick={() => onToggle([id], !isOn)}
               >
                 {word}
-              </button>
+              </Button>
             )
           })}
-        </div>
+        </Group>
       )}
-    </div>
+    </Box>
   )
 }

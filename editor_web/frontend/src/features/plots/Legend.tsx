@@ -1,7 +1,8 @@
 /** The curves with their colours, their values now or where one points, and how to take one away. */
-import { IconX } from '@tabler/icons-react'
+import { Box, CloseButton, Group, List, Text } from '@mantine/core'
 import type { Curves } from '../../document/curves'
 import { numeral } from '../../document/values'
+import classes from './plots.module.css'
 
 export interface LegendEntry {
   readonly id: string
@@ -23,36 +24,41 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
   const last = endS === undefined ? curves.length - 1 : curves.nearest(endS)
   const row = atS === undefined ? last : curves.nearest(atS)
   return (
-    <ul className="plain-list plot-legend" aria-label="Curves">
+    <List listStyleType="none" className={classes.legend ?? ''} px="sm" pb="3xs" fz="0.76rem" aria-label="Curves">
       {entries.map((entry) => {
         const value = row === undefined || row < 0 ? NaN : curves.value(entry.id, row)
         return (
           <li key={entry.id}>
-            <span
-              className={`plot-color${entry.color >= 8 ? ' is-dashed' : ''}`}
-              style={{ borderColor: `var(--curve-${entry.color % 8})` }}
-              aria-hidden
-            />
-            <span className="plot-label" title={`${entry.topic} ${entry.label}`}>
-              {entry.label} <span className="quiet">{entry.topic}</span>
-            </span>
-            <span className="plot-value">
-              {valueText(value)} {entry.unit}
-            </span>
-            {onRemove && (
-              <button
-                type="button"
-                className="plot-remove"
-                aria-label={`Take away ${entry.label} of ${entry.topic}`}
-                onClick={() => onRemove(entry.id)}
-              >
-                <IconX size={12} aria-hidden />
-              </button>
-            )}
+            <Group gap="3xs" wrap="nowrap" miw={0}>
+              <Box
+                component="span"
+                flex="none"
+                w={16}
+                style={{ borderTop: `3px ${entry.color >= 8 ? 'dashed' : 'solid'} var(--curve-${entry.color % 8})` }}
+                aria-hidden
+              />
+              <Text span inherit truncate flex={1} title={`${entry.topic} ${entry.label}`}>
+                {entry.label}{' '}
+                <Text span inherit c="dimmed" className={classes.topic ?? ''}>
+                  {entry.topic}
+                </Text>
+              </Text>
+              <span>
+                {valueText(value)} {entry.unit}
+              </span>
+              {onRemove && (
+                <CloseButton
+                  size="xs"
+                  iconSize={12}
+                  aria-label={`Take away ${entry.label} of ${entry.topic}`}
+                  onClick={() => onRemove(entry.id)}
+                />
+              )}
+            </Group>
           </li>
         )
       })}
-    </ul>
+    </List>
   )
 }
 

@@ -4,6 +4,7 @@ import { useEffect, useRef, type KeyboardEvent, type PointerEvent } from 'react'
 import { actOn, useWheelZoom } from './canvasInput'
 import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve, type Look } from './draw'
 import type { Plot } from './usePlot'
+import classes from './plots.module.css'
 
 interface PlotCanvasProps {
   readonly plot: Plot
@@ -58,7 +59,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
   return (
     // oxlint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- a picture that is read by the keyboard
     <div
-      className="plot-canvas"
+      className={classes.canvas}
       ref={both}
       role="img"
       tabIndex={0}

@@ -1,6 +1,5 @@
 /** Curves of chosen numbers of topics: joints, forces, widths, over the last two minutes. */
-import './plots.css'
-import { Button, SegmentedControl } from '@mantine/core'
+import { Button, Group, SegmentedControl, Text } from '@mantine/core'
 import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
 import { busQueries } from '../../api/bus'
@@ -17,6 +16,7 @@ import { Legend } from './Legend'
 import { PlotCanvas } from './PlotCanvas'
 import { SPANS_S, usePlot } from './usePlot'
 import type { TopicFields } from '../../api/types'
+import classes from './plots.module.css'
 
 const NONE: readonly TopicFields[] = []
 
@@ -44,7 +44,7 @@ export function Plots() {
 
   const isPaused = plot.pausedS !== undefined
   const tools = (
-    <div className="plot-tools">
+    <Group gap="2xs" wrap="nowrap" flex={1} miw={0}>
       <Button
         size="compact-xs"
         variant={isChoosing ? 'light' : 'subtle'}
@@ -54,10 +54,10 @@ export function Plots() {
       >
         Choose
       </Button>
-      <span className="plot-time">
+      <Text span flex={1} truncate fz="0.78rem" c="dimmed" style={{ fontVariantNumeric: 'tabular-nums' }}>
         {atS !== undefined ? wallTime(atS) : isPaused ? `paused at ${wallTime(plot.pausedS ?? 0)}` : ''}
         {plot.dropped > 0 && <span title="This page was too slow for them"> {plot.dropped} samples missing</span>}
-      </span>
+      </Text>
       <SegmentedControl
         size="xs"
         aria-label="Time shown"
@@ -83,12 +83,12 @@ export function Plots() {
       >
         CSV
       </Button>
-    </div>
+    </Group>
   )
 
   function body() {
     if (problem) return <Empty title="There are no numbers to plot">{problem}</Empty>
-    if (!topics) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!topics) return <div role="status" aria-label="Loading" />
     if (topics.length === 0) {
       return (
         <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="There is nothing to plot yet">
@@ -97,14 +97,14 @@ export function Plots() {
       )
     }
     return (
-      <div className={`plot-halves${isChoosing ? ' is-choosing' : ''}`}>
+      <div className={classes.halves} data-choosing={isChoosing || undefined}>
         {isChoosing && <FieldChooser topics={topics} chosen={plot.chosen} onChoose={plot.choose} />}
         {entries.length === 0 ? (
           <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is selected">
             Unfold a topic and tick what you want to see: joints, forces, widths.
           </Empty>
         ) : (
-          <div className="plot-main">
+          <div className={classes.main}>
             <PlotCanvas plot={plot} curves={entries} atS={atS} onPoint={setAtS} />
             <Legend
               entries={entries}
@@ -120,8 +120,8 @@ export function Plots() {
   }
 
   return (
-    <Panel title="Plots" tools={tools} className="plot-panel">
-      <div className="plots" ref={area}>
+    <Panel title="Plots" tools={tools}>
+      <div className={classes.plots} ref={area}>
         {body()}
       </div>
     </Panel>

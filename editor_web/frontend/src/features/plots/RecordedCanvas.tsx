@@ -6,6 +6,7 @@ import type { View } from '../../document/timeline'
 import { actOn, useWheelZoom } from './canvasInput'
 import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve } from './draw'
 import { lookOf, sized } from './PlotCanvas'
+import classes from './plots.module.css'
 
 interface RecordedCanvasProps {
   readonly canvas: RefObject<HTMLCanvasElement | null>
@@ -72,7 +73,7 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
 
   return (
     <div
-      className="plot-canvas"
+      className={classes.canvas}
       ref={both}
       role="slider"
       tabIndex={0}

@@ -1,6 +1,5 @@
 /** Curves of a recorded run, or of two over one another, with the cursor that the whole page shares. */
-import './plots.css'
-import { Button } from '@mantine/core'
+import { Button, Group, Text } from '@mantine/core'
 import { IconArrowsMaximize, IconChartLine, IconDownload, IconListTree, IconPhotoDown } from '@tabler/icons-react'
 import { useCallback, useMemo, useRef, useState } from 'react'
 import { Empty } from '../../components/Empty'
@@ -16,6 +15,7 @@ import { Legend } from './Legend'
 import { curveId, type RecordedSource } from './recorded'
 import { RecordedCanvas } from './RecordedCanvas'
 import { useRecordedCurves, useRecordedFields } from './useRecordedCurves'
+import classes from './plots.module.css'
 
 export interface RecordedPlotsProps {
   readonly sources: readonly RecordedSource[]
@@ -75,7 +75,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
 
   const isEmpty = entries.length === 0
   const tools = (
-    <div className="plot-tools">
+    <Group gap="2xs" wrap="nowrap" flex={1} miw={0}>
       <Button
         size="compact-xs"
         variant={isChoosing ? 'light' : 'subtle'}
@@ -85,7 +85,9 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
       >
         Choose
       </Button>
-      <span className="plot-time">{cursorS !== undefined && `${cursorS.toFixed(2)} s`}</span>
+      <Text span flex={1} truncate fz="0.78rem" c="dimmed" style={{ fontVariantNumeric: 'tabular-nums' }}>
+        {cursorS !== undefined && `${cursorS.toFixed(2)} s`}
+      </Text>
       <Button
         size="compact-xs"
         variant="default"
@@ -107,21 +109,21 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
       >
         PNG
       </Button>
-    </div>
+    </Group>
   )
 
   function body() {
     if (problem || lost) return <Empty title="There are no recorded curves">{problem || lost}</Empty>
-    if (!topics) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (!topics) return <div role="status" aria-label="Loading" />
     return (
-      <div className={`plot-halves${isChoosing ? ' is-choosing' : ''}`}>
+      <div className={classes.halves} data-choosing={isChoosing || undefined}>
         {isChoosing && <FieldChooser topics={topics} chosen={known} onChoose={choose} />}
         {isEmpty ? (
           <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is selected">
             Unfold a topic and tick what you want to see: joints, forces, widths.
           </Empty>
         ) : (
-          <div className="plot-main">
+          <div className={classes.main}>
             <RecordedCanvas
               canvas={canvas}
               curves={curves}
@@ -147,8 +149,8 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
   }
 
   return (
-    <Panel title="Recorded curves" tools={tools} className="plot-panel">
-      <div className="plots" ref={area}>
+    <Panel title="Recorded curves" tools={tools}>
+      <div className={classes.plots} ref={area}>
         {body()}
       </div>
     </Panel>

@@ -1,6 +1,6 @@
 /** Runs whose engine died: what they ask, and going on with them. */
 import { lookup, type Dict } from '../../document/dict'
-import { Alert, Button, Checkbox, Radio } from '@mantine/core'
+import { Alert, Button, Checkbox, Group, List, Paper, Radio, Stack, Text } from '@mantine/core'
 import { IconHeartbeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, ServerError } from '../../api/client'
@@ -16,11 +16,11 @@ export interface InterruptedProps {
 
 export function Interrupted({ runs, obstacle, onResumed }: InterruptedProps) {
   return (
-    <ul className="plain-list interrupted">
+    <List listStyleType="none">
       {runs.map((run) => (
         <Resumable key={run.id} run={run} obstacle={obstacle} onResumed={onResumed} />
       ))}
-    </ul>
+    </List>
   )
 }
 
@@ -51,55 +51,64 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
   }
 
   return (
-    <li className="resumable" aria-label={`Interrupted run of ${run.behavior}`}>
-      <div className="resumable-head">
-        <IconHeartbeat size={18} aria-hidden />
-        <span>
-          <strong>{run.behavior}</strong> <span className="quiet mono">{run.id}</span>
-          <span className="quiet resumable-facts">
-            started {wallTime(run.started_unix_s)}; its engine ended in the middle of it, after event {run.last_seq}
+    <li aria-label={`Interrupted run of ${run.behavior}`}>
+      <Stack gap="2xs" py="3xs">
+        <Group gap="2xs" align="start" wrap="nowrap">
+          <IconHeartbeat size={18} aria-hidden />
+          <span>
+            <strong>{run.behavior}</strong>{' '}
+            <Text span inherit ff="monospace">
+              {run.id}
+            </Text>
+            <Text span display="block" fz="0.8rem">
+              started {wallTime(run.started_unix_s)}; its engine ended in the middle of it, after event {run.last_seq}
+            </Text>
           </span>
-        </span>
-      </div>
-      {questions.length > 0 && (
-        <div className="questions">
-          <p>
-            These states had begun and nobody knows whether they had their effect. Look at the cell, then say what became of each: it is
-            either run again from its start, or taken as ended.
-          </p>
-          {questions.map((question) => (
-            <Radio.Group
-              key={question.path}
-              label={question.path}
-              size="sm"
-              value={lookup(answers, question.path) ?? ''}
-              onChange={(answer) => setAnswers({ ...answers, [question.path]: answer })}
-            >
-              <Radio value="rerun" label="Run it again" size="sm" />
-              {question.outcomes.map((outcome) => (
-                <Radio key={outcome} value={outcome} label={`It ended with ${outcome}`} size="sm" />
-              ))}
-            </Radio.Group>
-          ))}
-        </div>
-      )}
-      {problem && (
-        <Alert color="red" variant="light" title="It was not resumed" role="alert">
-          {problem.message}
-          {problem.hint && <div className="quiet">{problem.hint}</div>}
-        </Alert>
-      )}
-      <div className="command-row">
-        <Button size="compact-sm" disabled={obstacle !== undefined || isOpen || isSent} title={obstacle} onClick={() => void resume()}>
-          {questions.length > 0 ? 'Go on with these answers' : 'Resume'}
-        </Button>
-        <Checkbox
-          size="xs"
-          label="Also if its file has changed since"
-          checked={changed}
-          onChange={(event) => setChanged(event.currentTarget.checked)}
-        />
-      </div>
+        </Group>
+        {questions.length > 0 && (
+          <Paper component={Stack} gap="xs" px="sm" py="xs" bg="var(--surface)">
+            <Text inherit>
+              These states had begun and nobody knows whether they had their effect. Look at the cell, then say what became of each: it is
+              either run again from its start, or taken as ended.
+            </Text>
+            {questions.map((question) => (
+              <Radio.Group
+                key={question.path}
+                label={question.path}
+                size="sm"
+                value={lookup(answers, question.path) ?? ''}
+                onChange={(answer) => setAnswers({ ...answers, [question.path]: answer })}
+              >
+                <Radio value="rerun" label="Run it again" size="sm" />
+                {question.outcomes.map((outcome) => (
+                  <Radio key={outcome} value={outcome} label={`It ended with ${outcome}`} size="sm" />
+                ))}
+              </Radio.Group>
+            ))}
+          </Paper>
+        )}
+        {problem && (
+          <Alert color="red" variant="light" title="It was not resumed" role="alert">
+            {problem.message}
+            {problem.hint && (
+              <Text inherit c="dimmed">
+                {problem.hint}
+              </Text>
+            )}
+          </Alert>
+        )}
+        <Group gap="3xs">
+          <Button size="compact-sm" disabled={obstacle !== undefined || isOpen || isSent} title={obstacle} onClick={() => void resume()}>
+            {questions.length > 0 ? 'Go on with these answers' : 'Resume'}
+          </Button>
+          <Checkbox
+            size="xs"
+            label="Also if its file has changed since"
+            checked={changed}
+            onChange={(event) => setChanged(event.currentTarget.checked)}
+          />
+        </Group>
+      </Stack>
     </li>
   )
 }

@@ -1,5 +1,5 @@
 /** One run among several: how it stands, what is active, what it waits for, what it holds, and its commands. */
-import { Checkbox } from '@mantine/core'
+import { Checkbox, Group, List, Paper, Stack, Text, Title } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import { useNodePart } from '../../api/liveParts'
@@ -9,11 +9,12 @@ import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { waitingWords } from '../../document/commands'
 import { activeLeaves } from '../../document/runProgress'
-import { runStateOf } from '../../document/runState'
+import { runStateOf, type Status } from '../../document/runState'
 import { wallTime } from '../../document/time'
 import { pathWords } from '../../document/path'
 import { nameOf } from './RunList'
 import { RunStrip } from './RunStrip'
+import classes from './runs.module.css'
 
 export interface RunCardProps {
   readonly run: RunView
@@ -37,56 +38,93 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
   const name = nameOf(run.behavior)
   const state = runStateOf(run, control)
   return (
-    <article className={`run-card${run.waits ? ' is-waiting' : ''}`} aria-label={`Run of ${name}`}>
-      <header className="run-card-head">
-        <StatusIcon status={state.look} size={17} />
-        <h2>
-          <PageLink href={href} onOpen={onOpen}>
-            {name}
-          </PageLink>
-        </h2>
-        {isKnown && <Elapsed sinceS={0} />}
-        <span className="quiet">since {wallTime(run.started_at_s)}</span>
-        <span className="spacer" />
-        <Checkbox
-          size="xs"
-          label="Compare"
-          aria-label={`Compare ${name}`}
-          checked={isChosen}
-          onChange={(event) => onChoose(event.currentTarget.checked)}
-        />
-      </header>
-      <p className={`run-card-state is-${state.look}`}>
-        <strong role="status" aria-label={`State of ${name}`}>
-          {state.word}
-        </strong>
-        {state.reason && <span className="quiet"> {state.reason}</span>}
-      </p>
-      {root && <RunStrip root={root} />}
-      <dl className="run-facts">
-        <dt>Active</dt>
-        <dd>
-          <Active />
-        </dd>
-        <Waiting />
-        <dt>Holds</dt>
-        <dd>{held.length > 0 ? held.join(', ') : <span className="quiet">no arm or device</span>}</dd>
-      </dl>
-      {requests}
-      {commands}
-    </article>
+    <Paper
+      component="article"
+      withBorder
+      radius="md"
+      p="sm"
+      miw={0}
+      bg="var(--surface)"
+      bd={`1px solid var(${run.waits ? '--stopped' : '--line'})`}
+      aria-label={`Run of ${name}`}
+    >
+      <Stack gap="xs" h="100%">
+        <Group gap="xs" fz="0.84rem">
+          <StatusIcon status={state.look} size={17} />
+          <Title order={2} fz="1rem" style={{ overflowWrap: 'anywhere' }}>
+            <PageLink href={href} onOpen={onOpen}>
+              {name}
+            </PageLink>
+          </Title>
+          {isKnown && <Elapsed sinceS={0} />}
+          <Text span inherit c="dimmed">
+            since {wallTime(run.started_at_s)}
+          </Text>
+          <Checkbox
+            ml="auto"
+            size="xs"
+            label="Compare"
+            aria-label={`Compare ${name}`}
+            checked={isChosen}
+            onChange={(event) => onChoose(event.currentTarget.checked)}
+          />
+        </Group>
+        <Text fz="0.84rem">
+          <Text component="strong" inherit fw={700} c={colorOf(state.look)} role="status" aria-label={`State of ${name}`}>
+            {state.word}
+          </Text>
+          {state.reason && (
+            <Text span inherit c="dimmed">
+              {' '}
+              {state.reason}
+            </Text>
+          )}
+        </Text>
+        {root && <RunStrip root={root} />}
+        <dl className={classes.facts}>
+          <dt>Active</dt>
+          <dd>
+            <Active />
+          </dd>
+          <Waiting />
+          <dt>Holds</dt>
+          <dd>
+            {held.length > 0 ? (
+              held.join(', ')
+            ) : (
+              <Text span inherit c="dimmed">
+                no arm or device
+              </Text>
+            )}
+          </dd>
+        </dl>
+        {requests}
+        {commands}
+      </Stack>
+    </Paper>
   )
+}
+
+/** What waits for somebody is amber, like what was stopped. */
+function colorOf(look: Status): string {
+  if (look === 'idle' || look === 'skipped') return 'var(--quiet)'
+  return look === 'active' || look === 'done' || look === 'failed' ? `var(--${look})` : 'var(--stopped)'
 }
 
 function Active() {
   const active = useLive((s) => activeLeaves(s.nodes).join('\n'))
-  if (!active) return <span className="quiet">nothing</span>
+  if (!active)
+    return (
+      <Text span inherit c="dimmed">
+        nothing
+      </Text>
+    )
   return (
-    <ul className="plain-list run-active" aria-label="Active nodes">
+    <List listStyleType="none" fz="inherit" aria-label="Active nodes">
       {active.split('\n').map((path) => (
         <ActiveNode key={path} path={path} />
       ))}
-    </ul>
+    </List>
   )
 }
 
@@ -94,7 +132,10 @@ function ActiveNode({ path }: { path: string }) {
   const enteredS = useNodePart(path, (live) => live?.entered_s ?? 0)
   return (
     <li>
-      <span className="run-active-name">{pathWords(path)}</span> <Elapsed sinceS={enteredS} />
+      <Text span inherit fw={600}>
+        {pathWords(path)}
+      </Text>{' '}
+      <Elapsed sinceS={enteredS} />
     </li>
   )
 }
@@ -108,13 +149,13 @@ function Waiting() {
     <>
       <dt>Waits</dt>
       <dd>
-        <ul className="plain-list" aria-label="Nodes that wait">
+        <List listStyleType="none" fz="inherit" aria-label="Nodes that wait">
           {waiting.map((each) => (
             <li key={`${each.path}|${each.point}`}>
               {pathWords(each.path)} {waitingWords(each)}
             </li>
           ))}
-        </ul>
+        </List>
       </dd>
     </>
   )

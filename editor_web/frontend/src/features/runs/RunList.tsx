@@ -1,10 +1,11 @@
 /** The runs of this server, newest first. */
+import { List, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
 import type { RunView } from '../../api/types'
-import { Elapsed } from '../../components/Elapsed'
+import { Elapsed, TimeText } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
-import { PageLink } from '../../components/PageLink'
+import { SideLink } from '../../components/SideLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive, runStateOf, runWords } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
@@ -20,27 +21,25 @@ export interface RunListProps {
 export function RunList({ current, href, onOpen, limit }: RunListProps) {
   const runs = useLive((s) => s.runs)
   return (
-    <nav className="run-list" aria-label="Runs">
-      <h2 className="side-title">Runs</h2>
+    <nav aria-label="Runs">
+      <Text component="h2" fz="0.75rem" fw={600} mx="2xs" mb="2xs" c="dimmed">
+        Runs
+      </Text>
       {runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
-      <ul className="plain-list">
+      <List listStyleType="none">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
-            <PageLink
+            <SideLink
               href={href(run.id)}
-              className={`side-item run-item${run.id === current ? ' is-current' : ''}`}
               isCurrent={run.id === current}
+              icon={<StatusIcon status={runStateOf(run).look} size={15} />}
+              label={nameOf(run.behavior)}
+              description={`${wallTime(run.started_at_s)} · ${runText(run)}`}
               onOpen={() => onOpen(run.id)}
-            >
-              <StatusIcon status={runStateOf(run).look} size={15} />
-              <span className="side-item-name">{nameOf(run.behavior)}</span>
-              <span className="side-item-text">
-                {wallTime(run.started_at_s)} · {runText(run)}
-              </span>
-            </PageLink>
+            />
           </li>
         ))}
-      </ul>
+      </List>
     </nav>
   )
 }
@@ -60,7 +59,7 @@ export function RunTime({ run }: { run: RunView }) {
   // The time of a paused run stands.
   if (isActive(run) && run.id === watched) return <Elapsed sinceS={0} />
   if (isActive(run) && run.waits !== 'paused') return <SinceStart startedS={run.started_at_s} />
-  return <span className="elapsed">{duration(run.duration_s)}</span>
+  return <TimeText>{duration(run.duration_s)}</TimeText>
 }
 
 /** By the clock on the wall, for runs that are not watched. */
@@ -70,5 +69,5 @@ function SinceStart({ startedS }: { startedS: number }) {
     const timer = setInterval(() => setNow(serverNow()), 1000)
     return () => clearInterval(timer)
   }, [])
-  return <span className="elapsed">{duration(Math.max(0, now - startedS))}</span>
+  return <TimeText>{duration(Math.max(0, now - startedS))}</TimeText>
 }

@@ -1,4 +1,5 @@
 /** A run at a glance: one cell for each of its steps, lit by the run that is shown here. */
+import { Box, Group, Stack, Text } from '@mantine/core'
 import { useMemo } from 'react'
 import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
@@ -6,6 +7,13 @@ import type { GraphNode } from '../../api/types'
 import { stripCells, progressText } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
 import { pathWords } from '../../document/path'
+
+const LIT: Readonly<Partial<Record<string, string>>> = {
+  active: 'var(--active)',
+  done: 'var(--done)',
+  failed: 'var(--failed)',
+  stopped: 'var(--stopped)',
+}
 
 export function RunStrip({ root }: { root: GraphNode }) {
   const cells = useMemo(() => stripCells(root), [root])
@@ -17,21 +25,31 @@ export function RunStrip({ root }: { root: GraphNode }) {
     ),
   )
   return (
-    <div className="run-strip">
-      <div className="run-cells" role="img" aria-label={words}>
+    <Stack gap="4xs">
+      <Group gap={2} h={10} wrap="nowrap" align="stretch" role="img" aria-label={words}>
         {cells.map((node) => (
           <Cell key={node.path} path={node.path} />
         ))}
-      </div>
-      <span className="quiet" aria-hidden>
+      </Group>
+      <Text span fz="0.78rem" c="dimmed" aria-hidden>
         {words}
-      </span>
-    </div>
+      </Text>
+    </Stack>
   )
 }
 
 function Cell({ path }: { path: string }) {
   const status = useNodePart(path, (live) => statusOf(live?.status ?? 'idle'))
   const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
-  return <span className={`run-cell is-${waits ? 'stopped' : status}`} title={`${pathWords(path)}: ${waits ? 'waits' : status}`} />
+  const shown = waits ? 'stopped' : status
+  return (
+    <Box
+      flex={1}
+      miw={2}
+      bdrs={3}
+      bg={LIT[shown] ?? 'var(--line)'}
+      {...(shown === 'active' ? { style: { boxShadow: '0 0 0 2px var(--active-glow)' } } : {})}
+      title={`${pathWords(path)}: ${waits ? 'waits' : status}`}
+    />
+  )
 }

@@ -1,10 +1,12 @@
 /** A sweep compared with another version that has executed the same runs: is this one worse? */
+import { Alert, Button, Group, NativeSelect, TextInput } from '@mantine/core'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { sweepsApi } from '../../api/sweeps'
 import type { Baseline, SweepComparison } from '../../api/types'
 import { baselineName, marginOf } from '../../document/baselines'
 import { ComparedRates } from './ComparedRates'
+import { Note } from './Note'
 
 export interface BaselineChoiceProps {
   readonly sweep: string
@@ -55,32 +57,38 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
     <>
       {known === undefined && (
         <>
-          <p className="quiet sweep-note">
+          <Note isQuiet>
             Is this version worse than one before? Both have executed the same runs; only those that ended differently count.
-          </p>
-          <button type="button" className="command" aria-disabled={isAsking || undefined} onClick={() => !isAsking && void ask(find)}>
+          </Note>
+          <Button
+            size="compact-sm"
+            variant="default"
+            aria-disabled={isAsking || undefined}
+            data-disabled={isAsking}
+            onClick={() => !isAsking && void ask(find)}
+          >
             {isAsking ? 'Looking …' : 'Choose a baseline'}
-          </button>
+          </Button>
         </>
       )}
       {known?.length === 0 && (
-        <p className="quiet sweep-note">
+        <Note isQuiet>
           No other version has executed these runs. After a change of the behavior, its cell or a package, execute the sweep again, and
           compare it with what it was.
-        </p>
+        </Note>
       )}
       {known !== undefined && known.length > 0 && (
         <form
-          className="sweep-baseline"
           onSubmit={(event) => {
             event.preventDefault()
             if (!isAsking) void ask(() => compare(known[at]))
           }}
         >
-          <label>
-            Baseline
-            <select
-              className="new-input"
+          <Group gap="xs" align="end" mb="2xs">
+            <NativeSelect
+              size="xs"
+              flex="1 1 100%"
+              label="Baseline"
               value={at}
               onChange={(event) => {
                 const chosen = Number(event.currentTarget.value)
@@ -93,27 +101,26 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
                   {baselineName(each)}
                 </option>
               ))}
-            </select>
-          </label>
-          <label>
-            May be lower by, points
-            <input
-              className="new-input"
+            </NativeSelect>
+            <TextInput
+              size="xs"
+              flex={1}
+              label="May be lower by, points"
               inputMode="decimal"
               placeholder="not required"
               value={margin}
               onChange={(event) => setMargin(event.currentTarget.value)}
             />
-          </label>
-          <button type="submit" className="command" aria-disabled={isAsking || undefined}>
-            Compare
-          </button>
+            <Button size="xs" variant="default" type="submit" aria-disabled={isAsking || undefined} data-disabled={isAsking}>
+              Compare
+            </Button>
+          </Group>
         </form>
       )}
       {problem && (
-        <p className="is-failed" role="alert">
+        <Alert color="red" variant="light" p="xs">
           {problem}
-        </p>
+        </Alert>
       )}
       {comparison && <ComparedRates compared={comparison} onSelect={onSelect} />}
     </>

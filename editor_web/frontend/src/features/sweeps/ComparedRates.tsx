@@ -1,9 +1,13 @@
 /** Both success rates, their difference with its interval, the verdict, and the runs that are broken. */
+import { Anchor, Box, Table } from '@mantine/core'
 import type { SweepComparison } from '../../api/types'
-import { StatusIcon } from '../../components/StatusIcon'
+import { StatusBadge } from '../../components/StatusBadge'
 import { differenceScale, pointsIntervalText, pointsText, ratesOf, shareText } from '../../document/baselines'
 import { verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
+import { Note } from './Note'
+import { ResultTable, UnseenHead } from './ResultTable'
+import classes from './bars.module.css'
 
 export function ComparedRates({
   compared: { comparison, verdict, words },
@@ -20,63 +24,64 @@ export function ComparedRates({
   const badge = verdictWords(verdict)
   return (
     <>
-      <div className="sweep-scroll" tabIndex={0} role="group" aria-label="Table of both versions">
-        <table className="sweep-table">
-          <thead className="visually-hidden">
-            <tr>
-              <th scope="col">Version</th>
-              <th scope="col">Succeeded</th>
-              <th scope="col">Rate</th>
-              <td />
-            </tr>
-          </thead>
-          <tbody>
-            {rates.map((each) => (
-              <tr key={each.name}>
-                <th scope="row">{each.name}</th>
-                <td className="is-number">
-                  {each.successes} of {each.runs}
-                </td>
-                <td className="is-number">{shareText(each.successes, each.runs)}</td>
-                <td className="sweep-bar-cell" />
-              </tr>
-            ))}
-            <tr>
-              <th scope="row">Difference</th>
-              <td className="is-number">{pointsIntervalText(interval)}</td>
-              <td className="is-number">{pointsText(difference)}</td>
-              <td className="sweep-bar-cell">
-                <span className="sweep-difference" aria-hidden>
-                  <span className="sweep-no-difference" />
-                  {margin !== null && <span className="sweep-margin" style={{ left: `${100 * place(-margin)}%` }} />}
-                  <IntervalBar interval={[place(interval[0]), place(interval[1])]} rate={place(difference)} isBad={interval[1] < 0} />
-                </span>
-              </td>
-            </tr>
-          </tbody>
-        </table>
-      </div>
-      <p className="sweep-note">
-        {badge && (
-          <span className={`badge is-${badge[0]}`}>
-            <StatusIcon status={badge[0]} size={13} />
-            {badge[1]}
-          </span>
-        )}{' '}
-        This version is {words}.
-      </p>
+      <ResultTable label="Table of both versions">
+        <UnseenHead>
+          <Table.Tr>
+            <Table.Th scope="col">Version</Table.Th>
+            <Table.Th scope="col">Succeeded</Table.Th>
+            <Table.Th scope="col">Rate</Table.Th>
+            <Table.Td />
+          </Table.Tr>
+        </UnseenHead>
+        <Table.Tbody>
+          {rates.map((each) => (
+            <Table.Tr key={each.name}>
+              <Table.Th scope="row">{each.name}</Table.Th>
+              <Table.Td ta="right">
+                {each.successes} of {each.runs}
+              </Table.Td>
+              <Table.Td ta="right">{shareText(each.successes, each.runs)}</Table.Td>
+              <Table.Td w="34%" miw={90} />
+            </Table.Tr>
+          ))}
+          <Table.Tr>
+            <Table.Th scope="row">Difference</Table.Th>
+            <Table.Td ta="right">{pointsIntervalText(interval)}</Table.Td>
+            <Table.Td ta="right">{pointsText(difference)}</Table.Td>
+            <Table.Td w="34%" miw={90}>
+              <Box component="span" display="block" mx={5} pos="relative" aria-hidden>
+                <span className={classes.zero} style={{ left: `${100 * place(0)}%` }} />
+                {margin !== null && <span className={classes.zero} data-margin style={{ left: `${100 * place(-margin)}%` }} />}
+                <IntervalBar interval={[place(interval[0]), place(interval[1])]} rate={place(difference)} isBad={interval[1] < 0} />
+              </Box>
+            </Table.Td>
+          </Table.Tr>
+        </Table.Tbody>
+      </ResultTable>
+      <Note>
+        {badge && <StatusBadge look={badge[0]} words={badge[1]} />} This version is {words}.
+      </Note>
       {broken.length > 0 && (
-        <p className="sweep-note">
+        <Note>
           Broken:{' '}
           {broken.map((run) => (
-            <button key={run} type="button" className="link sweep-broken" aria-label={`Run ${run}`} onClick={() => onSelect(run)}>
+            <Anchor
+              c="var(--accent)"
+              key={run}
+              component="button"
+              type="button"
+              inherit
+              mr="2xs"
+              aria-label={`Run ${run}`}
+              onClick={() => onSelect(run)}
+            >
               #{run}
-            </button>
+            </Anchor>
           ))}
           {pair.only_first > broken.length && `and ${pair.only_first - broken.length} more`}
-        </p>
+        </Note>
       )}
-      {changed.length > 0 && <p className="quiet sweep-note">Different: {changed.join(', ')}.</p>}
+      {changed.length > 0 && <Note isQuiet>Different: {changed.join(', ')}.</Note>}
     </>
   )
 }

@@ -1,6 +1,8 @@
 /** What the runs have covered of the factors, one by one and in pairs: nothing is known of the rest. */
+import { List, Text } from '@mantine/core'
 import type { InputCoverage } from '../../api/types'
 import { coverageText } from '../../document/sweeps'
+import { Mono, PartTitle } from './Note'
 
 const PAIRS = 6
 
@@ -8,22 +10,32 @@ export function CoveredInputs({ inputs }: { readonly inputs: InputCoverage }) {
   if (inputs.factors.length === 0) return null
   return (
     <>
-      <h3 className="sweep-subtitle">Inputs</h3>
-      <ul className="plain-list sweep-missing" aria-label="Covered inputs" tabIndex={0}>
+      <PartTitle>Inputs</PartTitle>
+      <List
+        listStyleType="none"
+        fz="0.8rem"
+        mah="15rem"
+        style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+        aria-label="Covered inputs"
+        tabIndex={0}
+      >
         {inputs.factors.map((factor) => (
           <li key={factor.address}>
-            <span className="mono">{factor.address}</span> <span className="quiet">{coverageText(factor)}</span>
+            <Mono>{factor.address}</Mono>{' '}
+            <Text span inherit c="dimmed">
+              {coverageText(factor)}
+            </Text>
           </li>
         ))}
         {inputs.pairs.slice(0, PAIRS).map(({ first, second, parts, covered }) => (
           <li key={`${first} ${second}`}>
-            <span className="mono">{first}</span>{' '}
-            <span className="quiet">
+            <Mono>{first}</Mono>{' '}
+            <Text span inherit c="dimmed">
               with {second}: {covered} of {parts} pairs of parts have a run
-            </span>
+            </Text>
           </li>
         ))}
-      </ul>
+      </List>
     </>
   )
 }

@@ -1,41 +1,42 @@
 /** Which factor matters: success by level with intervals, and rank correlations; those that matter most first. */
+import { Table } from '@mantine/core'
 import type { FactorEffect } from '../../api/types'
 import { percent } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
+import { Note, PartTitle } from './Note'
+import { ResultTable, UnseenHead } from './ResultTable'
 
 const FIRST = 8
 
 export function FactorEffects({ effects }: { readonly effects: readonly FactorEffect[] }) {
   return effects.slice(0, FIRST).map((effect) => (
-    <div key={effect.address} className="sweep-effect">
-      <h3 className="sweep-subtitle mono">{effect.address}</h3>
-      <p className="quiet sweep-note">{effectText(effect)}</p>
-      <div className="sweep-scroll" tabIndex={0} role="group" aria-label={`Success by ${effect.address}`}>
-        <table className="sweep-table">
-          <thead className="visually-hidden">
-            <tr>
-              <th scope="col">Value</th>
-              <th scope="col">Succeeded</th>
-              <th scope="col">Rate</th>
-              <td />
-            </tr>
-          </thead>
-          <tbody>
-            {effect.levels.map((level) => (
-              <tr key={level.label}>
-                <th scope="row">{level.label}</th>
-                <td className="is-number">
-                  {level.successes} of {level.runs}
-                </td>
-                <td className="is-number">{percent(level.successes / level.runs)}</td>
-                <td className="sweep-bar-cell">
-                  <IntervalBar interval={level.interval} rate={level.successes / level.runs} />
-                </td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </div>
+    <div key={effect.address}>
+      <PartTitle isMono>{effect.address}</PartTitle>
+      <Note isQuiet>{effectText(effect)}</Note>
+      <ResultTable label={`Success by ${effect.address}`}>
+        <UnseenHead>
+          <Table.Tr>
+            <Table.Th scope="col">Value</Table.Th>
+            <Table.Th scope="col">Succeeded</Table.Th>
+            <Table.Th scope="col">Rate</Table.Th>
+            <Table.Td />
+          </Table.Tr>
+        </UnseenHead>
+        <Table.Tbody>
+          {effect.levels.map((level) => (
+            <Table.Tr key={level.label}>
+              <Table.Th scope="row">{level.label}</Table.Th>
+              <Table.Td ta="right">
+                {level.successes} of {level.runs}
+              </Table.Td>
+              <Table.Td ta="right">{percent(level.successes / level.runs)}</Table.Td>
+              <Table.Td w="34%" miw={90}>
+                <IntervalBar interval={level.interval} rate={level.successes / level.runs} />
+              </Table.Td>
+            </Table.Tr>
+          ))}
+        </Table.Tbody>
+      </ResultTable>
     </div>
   ))
 }

@@ -1,8 +1,9 @@
 /** One factor in a form: what is varied, and over which values. */
-import { CloseButton } from '@mantine/core'
+import { CloseButton, Group, NativeSelect, Stack, TextInput } from '@mantine/core'
 import { useId } from 'react'
 import type { FactorChoice } from '../../api/types'
 import { proposedFactor, short, type FactorDraft } from '../../document/sweeps'
+import { Note } from './Note'
 
 export const NO_FACTOR: FactorDraft = { address: '', kind: 'uniform', first: '', second: '', values: '' }
 const KINDS = [
@@ -31,9 +32,10 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
   }
 
   return (
-    <div className="sweep-factor" role="group" aria-label={`Factor ${name}`}>
-      <input
-        className="new-input mono sweep-factor-name"
+    <Stack gap="3xs" py="2xs" style={{ borderBottom: '1px solid var(--line)' }} role="group" aria-label={`Factor ${name}`}>
+      <TextInput
+        size="xs"
+        styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
         list={list}
         aria-label="What is varied"
         placeholder="parameters.…, displace.…, cell.…"
@@ -47,53 +49,60 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
           </option>
         ))}
       </datalist>
-      <select
-        className="new-input"
-        aria-label={`Distribution of ${name}`}
-        value={factor.kind}
-        onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
-      >
-        {KINDS.map(([value, words]) => (
-          <option key={value} value={value}>
-            {words}
-          </option>
-        ))}
-      </select>
-      {factor.kind === 'values' ? (
-        <input
-          className="new-input sweep-factor-values"
-          aria-label={`Values of ${name}`}
-          placeholder="0.3, 0.5, 1"
-          value={factor.values}
-          onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })}
-        />
-      ) : (
-        <>
-          <input
-            className="new-input"
-            inputMode="decimal"
-            aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
-            placeholder={isNormal ? 'mean' : 'from'}
-            value={factor.first}
-            onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
+      <Group gap="3xs" wrap="nowrap">
+        <NativeSelect
+          size="xs"
+          flex={1}
+          miw="6.5rem"
+          aria-label={`Distribution of ${name}`}
+          value={factor.kind}
+          onChange={(event) => onChange({ ...factor, kind: event.currentTarget.value as FactorDraft['kind'] })}
+        >
+          {KINDS.map(([value, words]) => (
+            <option key={value} value={value}>
+              {words}
+            </option>
+          ))}
+        </NativeSelect>
+        {factor.kind === 'values' ? (
+          <TextInput
+            size="xs"
+            flex={2}
+            aria-label={`Values of ${name}`}
+            placeholder="0.3, 0.5, 1"
+            value={factor.values}
+            onChange={(event) => onChange({ ...factor, values: event.currentTarget.value })}
           />
-          <input
-            className="new-input"
-            inputMode="decimal"
-            aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
-            placeholder={isNormal ? 'deviation' : 'to'}
-            value={factor.second}
-            onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })}
-          />
-        </>
-      )}
-      <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
+        ) : (
+          <>
+            <TextInput
+              size="xs"
+              flex={1}
+              inputMode="decimal"
+              aria-label={`${isNormal ? 'Mean' : 'Least value'} of ${name}`}
+              placeholder={isNormal ? 'mean' : 'from'}
+              value={factor.first}
+              onChange={(event) => onChange({ ...factor, first: event.currentTarget.value })}
+            />
+            <TextInput
+              size="xs"
+              flex={1}
+              inputMode="decimal"
+              aria-label={`${isNormal ? 'Standard deviation' : 'Greatest value'} of ${name}`}
+              placeholder={isNormal ? 'deviation' : 'to'}
+              value={factor.second}
+              onChange={(event) => onChange({ ...factor, second: event.currentTarget.value })}
+            />
+          </>
+        )}
+        <CloseButton aria-label={`Remove ${name}`} onClick={onRemove} />
+      </Group>
       {choice && (
-        <p className="quiet sweep-note">
+        <Note isQuiet>
           {choice.nominal === null ? 'without a default' : `${short(choice.nominal)} ${choice.unit} where nothing is varied`}
           {choice.description && `; ${choice.description}`}
-        </p>
+        </Note>
       )}
-    </div>
+    </Stack>
   )
 }

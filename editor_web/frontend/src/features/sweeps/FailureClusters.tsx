@@ -1,8 +1,11 @@
 /** Failures by cause, and for each cause the ranges of the factors with which runs failed so. */
+import { Box, List, Table } from '@mantine/core'
 import type { FailureCluster, FactorRegion } from '../../api/types'
 import { percent } from '../../document/sweeps'
 import { rangeText } from '../../document/searches'
 import { CauseButton } from './Outcomes'
+import { ResultTable } from './ResultTable'
+import table from './table.module.css'
 
 const HEAD = ['Failing', 'Executed', 'Likelihood', 'Successes in there']
 
@@ -15,45 +18,43 @@ export interface FailureClustersProps {
 
 export function FailureClusters({ clusters, chosen, onChoose }: FailureClustersProps) {
   return (
-    <ul className="plain-list sweep-clusters" aria-label="Causes of failures">
+    <List listStyleType="none" aria-label="Causes of failures">
       {clusters.map(({ cause, regions }) => (
-        <li key={`${cause.at} ${cause.message}`}>
+        <Box component="li" key={`${cause.at} ${cause.message}`} mb="sm">
           <CauseButton cause={cause} chosen={chosen} onChoose={onChoose} />
           {regions.length > 0 && <Regions regions={regions} cause={cause.message} />}
-        </li>
+        </Box>
       ))}
-    </ul>
+    </List>
   )
 }
 
 function Regions({ regions, cause }: { readonly regions: readonly FactorRegion[]; readonly cause: string }) {
   return (
-    <div className="sweep-scroll" tabIndex={0} role="group" aria-label={`Where it fails: ${cause}`}>
-      <table className="sweep-table">
-        <thead>
-          <tr>
-            <th scope="col">Factor</th>
-            {HEAD.map((name) => (
-              <th key={name} scope="col" className="is-number">
-                {name}
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {regions.map((region) => (
-            <tr key={region.address}>
-              <th scope="row" className="mono sweep-path" title={region.address}>
-                <bdi>{region.address}</bdi>
-              </th>
-              <td className="is-number">{rangeText(region.failing, region.listed)}</td>
-              <td className="is-number">{rangeText(region.executed, region.listed)}</td>
-              <td className="is-number">{percent(region.share)}</td>
-              <td className="is-number">{region.passed_inside}</td>
-            </tr>
+    <ResultTable label={`Where it fails: ${cause}`}>
+      <Table.Thead>
+        <Table.Tr>
+          <Table.Th scope="col">Factor</Table.Th>
+          {HEAD.map((name) => (
+            <Table.Th key={name} scope="col" ta="right">
+              {name}
+            </Table.Th>
           ))}
-        </tbody>
-      </table>
-    </div>
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody>
+        {regions.map((region) => (
+          <Table.Tr key={region.address}>
+            <Table.Th scope="row" ff="monospace" className={`${table.cut} ${table.path}`} title={region.address}>
+              <bdi>{region.address}</bdi>
+            </Table.Th>
+            <Table.Td ta="right">{rangeText(region.failing, region.listed)}</Table.Td>
+            <Table.Td ta="right">{rangeText(region.executed, region.listed)}</Table.Td>
+            <Table.Td ta="right">{percent(region.share)}</Table.Td>
+            <Table.Td ta="right">{region.passed_inside}</Table.Td>
+          </Table.Tr>
+        ))}
+      </Table.Tbody>
+    </ResultTable>
   )
 }

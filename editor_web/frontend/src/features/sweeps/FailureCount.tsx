@@ -2,16 +2,16 @@
 import type { SearchLive } from '../../api/types'
 import { failuresText } from '../../document/searches'
 import { short } from '../../document/sweeps'
+import { BigFigure } from './BigFigure'
 
 export function FailureCount({ search, towards }: { readonly search: SearchLive; readonly towards: string }) {
   return (
-    <p className="sweep-success">
-      <strong>{failuresText(search)}</strong>
+    <BigFigure figure={failuresText(search)}>
       {search.nearest !== null && (
         <span>
           nearest success: {towards} {short(search.nearest)}
         </span>
       )}
-    </p>
+    </BigFigure>
   )
 }

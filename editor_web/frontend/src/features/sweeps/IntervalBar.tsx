@@ -1,5 +1,6 @@
 /** A rate from 0 to 1 with its interval, as a line with a dot; the numbers stand beside it. */
 import type { Interval } from '../../api/types'
+import classes from './bars.module.css'
 
 export interface IntervalBarProps {
   readonly interval: Interval
@@ -9,9 +10,9 @@ export interface IntervalBarProps {
 
 export function IntervalBar({ interval: [low, high], rate, isBad = false }: IntervalBarProps) {
   return (
-    <span className={`sweep-bar${isBad ? ' is-bad' : ''}`} aria-hidden>
-      <span className="sweep-whisker" style={{ left: `${100 * low}%`, width: `${100 * (high - low)}%` }} />
-      <span className="sweep-dot" style={{ left: `${100 * rate}%` }} />
+    <span className={classes.bar} data-bad={isBad || undefined} aria-hidden>
+      <span className={classes.whisker} style={{ left: `${100 * low}%`, width: `${100 * (high - low)}%` }} />
+      <span className={classes.dot} style={{ left: `${100 * rate}%` }} />
     </span>
   )
 }

@@ -1,29 +1,45 @@
 /** What no run of the sweep has executed: nodes that were never entered, exits that were never taken. */
+import { List, Text } from '@mantine/core'
 import type { CoverageItem } from '../../api/types'
+import { Mono, Note } from './Note'
 
 const FIRST = 60
 
 export function MissedItems({ items, missing }: { readonly items: number; readonly missing: readonly CoverageItem[] }) {
   return (
     <>
-      <p className="sweep-note">
+      <Note>
         {items - missing.length} of {items} nodes and exits of the behavior were executed.
-      </p>
+      </Note>
       {missing.length > 0 && (
-        <ul className="plain-list sweep-missing" aria-label="Never executed" tabIndex={0}>
+        <List
+          listStyleType="none"
+          fz="0.8rem"
+          mah="15rem"
+          style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+          aria-label="Never executed"
+          tabIndex={0}
+        >
           {missing.slice(0, FIRST).map((item) => (
             <li key={`${item.kind} ${item.path} ${item.name ?? ''} ${item.target ?? ''}`}>
-              <span className="quiet">{item.kind.replace('_', ' ')}</span> <span className="mono">{item.path}</span>
+              <Text span inherit c="dimmed">
+                {item.kind.replace('_', ' ')}
+              </Text>{' '}
+              <Mono>{item.path}</Mono>
               {item.name && (
-                <span className="mono">
+                <Mono>
                   {' '}
                   —{item.name}→ {item.target}
-                </span>
+                </Mono>
               )}
             </li>
           ))}
-          {missing.length > FIRST && <li className="quiet">and {missing.length - FIRST} more</li>}
-        </ul>
+          {missing.length > FIRST && (
+            <Text component="li" inherit c="dimmed">
+              and {missing.length - FIRST} more
+            </Text>
+          )}
+        </List>
       )}
     </>
   )

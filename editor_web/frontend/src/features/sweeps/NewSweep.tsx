@@ -1,4 +1,5 @@
 /** Making a sweep: what is executed, how often, what is varied and what is required; it becomes a document. */
+import { Alert, Button, Fieldset, Group, NativeSelect, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus } from '@tabler/icons-react'
 import { useState } from 'react'
 import { behaviorQueries } from '../../api/behaviorQueries'
@@ -9,6 +10,7 @@ import { Dialog } from '../../components/Dialog'
 import { documentOf, proposedId, type FactorDraft, type SweepDraft } from '../../document/sweeps'
 import { FactorFields, NO_FACTOR } from './FactorFields'
 import { NEW_SEARCH, SearchFields } from './SearchFields'
+import { Note } from './Note'
 
 export interface NewSweepProps {
   /** The sweeps that there are. */
@@ -20,9 +22,9 @@ export function NewSweep({ taken, onMade }: NewSweepProps) {
   const [isOpen, setOpen] = useState(false)
   return (
     <>
-      <button type="button" className="command is-strong" onClick={() => setOpen(true)}>
-        <IconPlus size={14} aria-hidden /> New sweep
-      </button>
+      <Button size="compact-sm" onClick={() => setOpen(true)} leftSection={<IconPlus size={14} aria-hidden />}>
+        New sweep
+      </Button>
       <Dialog isOpen={isOpen} title="New sweep" onClose={() => setOpen(false)}>
         <NewSweepForm
           taken={taken}
@@ -77,16 +79,14 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
 
   return (
     <form
-      className="new-form sweep-form"
       onSubmit={(event) => {
         event.preventDefault()
         if (!isSending) void send(true)
       }}
     >
-      <label>
-        Behavior
-        <select
-          className="new-input"
+      <Stack gap="sm" miw="min(24rem, 80vw)">
+        <NativeSelect
+          label="Behavior"
           value={draft.behavior}
           onChange={(event) => change({ behavior: event.currentTarget.value, factors: [] })}
         >
@@ -96,86 +96,92 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
               {each.id.replace(/^behaviors\//, '')}
             </option>
           ))}
-        </select>
-      </label>
-      <label>
-        To find out
-        <select
-          className="new-input"
+        </NativeSelect>
+        <NativeSelect
+          label="To find out"
           value={draft.search ? 'search' : 'rate'}
           onChange={(event) => change({ search: event.currentTarget.value === 'search' ? NEW_SEARCH : undefined })}
         >
           <option value="rate">how often it succeeds: random runs</option>
           <option value="search">how it fails: a search for failures</option>
-        </select>
-      </label>
-      <div className="sweep-form-row">
-        <label>
-          Runs
-          <input
-            className="new-input"
+        </NativeSelect>
+        <Group gap="xs">
+          <TextInput
+            flex="1 1 8rem"
+            label="Runs"
             inputMode="numeric"
             value={draft.runs}
             onChange={(event) => change({ runs: event.currentTarget.value })}
           />
-        </label>
-        {!draft.search && (
-          <label>
-            Required success rate, %
-            <input
-              className="new-input"
+          {!draft.search && (
+            <TextInput
+              flex="1 1 8rem"
+              label="Required success rate, %"
               inputMode="decimal"
               placeholder="none"
               value={draft.required}
               onChange={(event) => change({ required: event.currentTarget.value })}
             />
-          </label>
-        )}
-      </div>
-      {draft.search && <SearchFields search={draft.search} onChange={(search) => change({ search })} />}
-      <fieldset className="sweep-factors">
-        <legend>What is varied</legend>
-        {draft.factors.map((factor, at) => (
-          <FactorFields
-            key={at}
-            factor={factor}
-            choices={choices}
-            onChange={(changed) => withFactor(at, changed)}
-            onRemove={() => withFactor(at, undefined)}
-          />
-        ))}
-        <button
-          type="button"
-          className="command"
-          aria-disabled={!draft.behavior || undefined}
-          onClick={() => draft.behavior && change({ factors: [...draft.factors, NO_FACTOR] })}
+          )}
+        </Group>
+        {draft.search && <SearchFields search={draft.search} onChange={(search) => change({ search })} />}
+        <Fieldset
+          variant="unstyled"
+          legend={
+            <Text span fz="sm" fw={600}>
+              What is varied
+            </Text>
+          }
         >
-          <IconPlus size={14} aria-hidden /> Add a factor
-        </button>
-        <p className="quiet sweep-note">Each run has a seed of its own, and places the parts that have jitter.</p>
-      </fieldset>
-      <label>
-        Document in the project
-        <input
-          className="new-input mono"
+          {draft.factors.map((factor, at) => (
+            <FactorFields
+              key={at}
+              factor={factor}
+              choices={choices}
+              onChange={(changed) => withFactor(at, changed)}
+              onRemove={() => withFactor(at, undefined)}
+            />
+          ))}
+          <Button
+            size="compact-sm"
+            variant="default"
+            mt="2xs"
+            aria-disabled={!draft.behavior || undefined}
+            data-disabled={!draft.behavior}
+            onClick={() => draft.behavior && change({ factors: [...draft.factors, NO_FACTOR] })}
+            leftSection={<IconPlus size={14} aria-hidden />}
+          >
+            Add a factor
+          </Button>
+          <Note isQuiet>Each run has a seed of its own, and places the parts that have jitter.</Note>
+        </Fieldset>
+        <TextInput
+          label="Document in the project"
+          styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
           placeholder={id || 'behaviors/sweeps/name.yaml'}
           value={draft.id}
           onChange={(event) => change({ id: event.currentTarget.value })}
         />
-      </label>
-      {problem && (
-        <p className="is-failed" role="alert">
-          {problem}
-        </p>
-      )}
-      <div className="sweep-form-row">
-        <button type="submit" className="command is-strong" aria-disabled={isSending || undefined}>
-          {step || 'Make and start'}
-        </button>
-        <button type="button" className="command" aria-disabled={isSending || undefined} onClick={() => !isSending && void send(false)}>
-          Make only
-        </button>
-      </div>
+        {problem && (
+          <Alert color="red" variant="light" p="xs">
+            {problem}
+          </Alert>
+        )}
+        <Group gap="xs">
+          <Button size="xs" type="submit" aria-disabled={isSending || undefined} data-disabled={isSending}>
+            {step || 'Make and start'}
+          </Button>
+          <Button
+            size="xs"
+            variant="default"
+            aria-disabled={isSending || undefined}
+            data-disabled={isSending}
+            onClick={() => !isSending && void send(false)}
+          >
+            Make only
+          </Button>
+        </Group>
+      </Stack>
     </form>
   )
 }

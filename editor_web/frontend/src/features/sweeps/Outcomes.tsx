@@ -1,47 +1,48 @@
 /** How runs ended with the interval of each share, and why they failed: a cause shows its runs. */
+import { Box, Group, List, Table, Text, UnstyledButton, VisuallyHidden } from '@mantine/core'
 import type { CauseGroup, OutcomeShare } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { intervalText, percent } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
+import { ResultTable } from './ResultTable'
+import classes from './sweeps.module.css'
 
 export function OutcomeTable({ outcomes, done }: { readonly outcomes: readonly OutcomeShare[]; readonly done: number }) {
   return (
-    <div className="sweep-scroll" tabIndex={0} role="group" aria-label="Table of outcomes">
-      <table className="sweep-table">
-        <thead>
-          <tr>
-            <th scope="col">Outcome</th>
-            <th scope="col" className="is-number">
-              Runs
-            </th>
-            <th scope="col" className="is-number">
-              Share
-            </th>
-            <th scope="col">Interval</th>
-            <td />
-          </tr>
-        </thead>
-        <tbody>
-          {outcomes.map((each) => (
-            <tr key={each.label}>
-              <th scope="row">
-                <span className="sweep-outcome">
-                  <StatusIcon status={each.success ? 'done' : 'failed'} size={14} />
-                  <span className="visually-hidden">{each.success ? 'success: ' : 'no success: '}</span>
-                  {each.label}
-                </span>
-              </th>
-              <td className="is-number">{each.runs}</td>
-              <td className="is-number">{percent(each.runs / done)}</td>
-              <td className="is-interval">{intervalText(each.interval)}</td>
-              <td className="sweep-bar-cell">
-                <IntervalBar interval={each.interval} rate={each.runs / done} isBad={!each.success} />
-              </td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
-    </div>
+    <ResultTable label="Table of outcomes">
+      <Table.Thead>
+        <Table.Tr>
+          <Table.Th scope="col">Outcome</Table.Th>
+          <Table.Th scope="col" ta="right">
+            Runs
+          </Table.Th>
+          <Table.Th scope="col" ta="right">
+            Share
+          </Table.Th>
+          <Table.Th scope="col">Interval</Table.Th>
+          <Table.Td />
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody>
+        {outcomes.map((each) => (
+          <Table.Tr key={each.label}>
+            <Table.Th scope="row">
+              <Group gap="3xs" wrap="nowrap">
+                <StatusIcon status={each.success ? 'done' : 'failed'} size={14} />
+                <VisuallyHidden>{each.success ? 'success: ' : 'no success: '}</VisuallyHidden>
+                {each.label}
+              </Group>
+            </Table.Th>
+            <Table.Td ta="right">{each.runs}</Table.Td>
+            <Table.Td ta="right">{percent(each.runs / done)}</Table.Td>
+            <Table.Td>{intervalText(each.interval)}</Table.Td>
+            <Table.Td w="34%" miw={90}>
+              <IntervalBar interval={each.interval} rate={each.runs / done} isBad={!each.success} />
+            </Table.Td>
+          </Table.Tr>
+        ))}
+      </Table.Tbody>
+    </ResultTable>
   )
 }
 
@@ -54,13 +55,13 @@ export interface CauseListProps {
 
 export function CauseList({ causes, chosen, onChoose }: CauseListProps) {
   return (
-    <ul className="plain-list sweep-causes" aria-label="Causes of failures">
+    <List listStyleType="none" aria-label="Causes of failures">
       {causes.map((each) => (
-        <li key={`${each.at} ${each.message}`}>
+        <Box component="li" key={`${each.at} ${each.message}`} mb="4xs">
           <CauseButton cause={each} chosen={chosen} onChoose={onChoose} />
-        </li>
+        </Box>
       ))}
-    </ul>
+    </List>
   )
 }
 
@@ -69,14 +70,18 @@ export function CauseButton({ cause, chosen, onChoose }: { readonly cause: Cause
   const example = cause.examples[0]
   const isChosen = chosen !== undefined && chosen === example
   return (
-    <button type="button" className="sweep-cause" aria-pressed={isChosen} onClick={() => onChoose(isChosen ? undefined : example)}>
-      <span className="sweep-cause-runs">
+    <UnstyledButton className={classes.cause} aria-pressed={isChosen} onClick={() => onChoose(isChosen ? undefined : example)}>
+      <Text span inherit fw={640} c="var(--failed)">
         {cause.runs} {cause.runs === 1 ? 'run' : 'runs'}
-      </span>
+      </Text>
       <span>
         {cause.message}
-        {cause.at && <span className="quiet mono sweep-cause-at">{cause.at}</span>}
+        {cause.at && (
+          <Text span inherit display="block" ff="monospace" c="var(--quiet)">
+            {cause.at}
+          </Text>
+        )}
       </span>
-    </button>
+    </UnstyledButton>
   )
 }

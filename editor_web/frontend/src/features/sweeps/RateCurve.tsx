@@ -1,8 +1,10 @@
 /** How the interval of the success rate has narrowed over the runs, with the required rate as a line. */
+import { Group, Text } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
-import { useId } from 'react'
+import { useId, type ReactNode } from 'react'
 import type { CurvePoint } from '../../api/types'
 import { intervalText, percent } from '../../document/sweeps'
+import classes from './drawings.module.css'
 
 const HEIGHT = 210
 const LEFT = 52
@@ -20,7 +22,12 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   const { ref, width } = useElementSize()
   const clip = useId()
   const last = curve.at(-1)
-  if (!last) return <p className="quiet">The curve begins with the first run.</p>
+  if (!last)
+    return (
+      <Text inherit c="dimmed">
+        The curve begins with the first run.
+      </Text>
+    )
   const wide = Math.max(width, 260)
   const least = floorOf(last, required)
   const x = (runs: number) => LEFT + ((wide - LEFT - RIGHT) * runs) / last.runs
@@ -33,7 +40,7 @@ export function RateCurve({ curve, required }: RateCurveProps) {
   return (
     <div ref={ref}>
       <svg
-        className="sweep-plot"
+        className={`${classes.drawing} ${classes.plot}`}
         viewBox={`0 0 ${wide} ${HEIGHT}`}
         height={HEIGHT}
         role="img"
@@ -44,16 +51,16 @@ export function RateCurve({ curve, required }: RateCurveProps) {
         </clipPath>
         {lines.map((rate) => (
           <g key={rate}>
-            <line className="sweep-grid" x1={LEFT} x2={wide - RIGHT} y1={y(rate)} y2={y(rate)} />
+            <line className="grid" x1={LEFT} x2={wide - RIGHT} y1={y(rate)} y2={y(rate)} />
             <text x={LEFT - 7} y={y(rate) + 4} textAnchor="end">
               {Number((100 * rate).toFixed(1))} %
             </text>
           </g>
         ))}
         <g clipPath={`url(#${clip})`}>
-          <polygon className="sweep-band" points={[...upper, ...lower].join(' ')} />
-          <polyline className="sweep-rate" points={curve.map((point) => `${x(point.runs)},${y(point.rate)}`).join(' ')} />
-          {required !== undefined && <line className="sweep-required" x1={LEFT} x2={wide - RIGHT} y1={y(required)} y2={y(required)} />}
+          <polygon className={classes.band} points={[...upper, ...lower].join(' ')} />
+          <polyline className="rate" points={curve.map((point) => `${x(point.runs)},${y(point.rate)}`).join(' ')} />
+          {required !== undefined && <line className={classes.required} x1={LEFT} x2={wide - RIGHT} y1={y(required)} y2={y(required)} />}
         </g>
         <text x={LEFT} y={HEIGHT - 9}>
           0
@@ -62,20 +69,37 @@ export function RateCurve({ curve, required }: RateCurveProps) {
           {last.runs} runs
         </text>
       </svg>
-      <p className="sweep-legend quiet">
-        <span className="sweep-key is-rate" aria-hidden /> rate
+      <Group gap="2xs" mt="4xs" fz="0.78rem" c="dimmed">
+        <Key>
+          <line className="rate" x2={18} y1={5} y2={5} />
+        </Key>{' '}
+        rate
         {last.interval && (
           <>
-            <span className="sweep-key is-band" aria-hidden /> interval
+            <Key>
+              <rect className={classes.band} width={18} height={10} />
+            </Key>{' '}
+            interval
           </>
         )}
         {required !== undefined && (
           <>
-            <span className="sweep-key is-required" aria-hidden /> required {percent(required)}
+            <Key>
+              <line className={classes.required} x2={18} y1={5} y2={5} />
+            </Key>{' '}
+            required {percent(required)}
           </>
         )}
-      </p>
+      </Group>
     </div>
+  )
+}
+
+function Key({ children }: { readonly children: ReactNode }) {
+  return (
+    <svg className={classes.drawing} width={18} height={10} aria-hidden>
+      {children}
+    </svg>
   )
 }
 

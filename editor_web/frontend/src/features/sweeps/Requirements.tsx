@@ -1,44 +1,44 @@
 /** What a sweep requires of numbers of its runs, with the interval by which each requirement is judged. */
+import { Group, Table, VisuallyHidden } from '@mantine/core'
 import type { JudgedRequirement } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { intervalText, keptText, verdictWords } from '../../document/sweeps'
 import { IntervalBar } from './IntervalBar'
+import { ResultTable } from './ResultTable'
 
 export function Requirements({ requirements }: { readonly requirements: readonly JudgedRequirement[] }) {
   // A success rate alone is told by the badge and the curve.
   if (requirements.every(({ number }) => number === null)) return null
   return (
-    <div className="sweep-scroll" tabIndex={0} role="group" aria-label="What is required">
-      <table className="sweep-table">
-        <thead>
-          <tr>
-            <th scope="col">Required</th>
-            <th scope="col">Runs that keep it</th>
-            <th scope="col">Interval</th>
-            <td />
-          </tr>
-        </thead>
-        <tbody>
-          {requirements.map((each) => (
-            <tr key={each.text}>
-              <th scope="row">
-                <span className="sweep-outcome">
-                  <Verdict verdict={each.verdict} />
-                  {each.text}
-                </span>
-              </th>
-              <td>{keptText(each)}</td>
-              <td className="is-interval">{each.interval !== null && intervalText(each.interval)}</td>
-              <td className="sweep-bar-cell">
-                {each.interval !== null && each.runs > 0 && (
-                  <IntervalBar interval={each.interval} rate={each.kept / each.runs} isBad={each.verdict === 'failed'} />
-                )}
-              </td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
-    </div>
+    <ResultTable label="What is required">
+      <Table.Thead>
+        <Table.Tr>
+          <Table.Th scope="col">Required</Table.Th>
+          <Table.Th scope="col">Runs that keep it</Table.Th>
+          <Table.Th scope="col">Interval</Table.Th>
+          <Table.Td />
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody>
+        {requirements.map((each) => (
+          <Table.Tr key={each.text}>
+            <Table.Th scope="row">
+              <Group gap="3xs" wrap="nowrap">
+                <Verdict verdict={each.verdict} />
+                {each.text}
+              </Group>
+            </Table.Th>
+            <Table.Td>{keptText(each)}</Table.Td>
+            <Table.Td>{each.interval !== null && intervalText(each.interval)}</Table.Td>
+            <Table.Td w="34%" miw={90}>
+              {each.interval !== null && each.runs > 0 && (
+                <IntervalBar interval={each.interval} rate={each.kept / each.runs} isBad={each.verdict === 'failed'} />
+              )}
+            </Table.Td>
+          </Table.Tr>
+        ))}
+      </Table.Tbody>
+    </ResultTable>
   )
 }
 
@@ -48,7 +48,7 @@ function Verdict({ verdict }: { readonly verdict: JudgedRequirement['verdict'] }
   return (
     <>
       <StatusIcon status={words[0]} size={14} />
-      <span className="visually-hidden">{words[1].toLowerCase()}: </span>
+      <VisuallyHidden>{words[1].toLowerCase()}: </VisuallyHidden>
     </>
   )
 }

@@ -1,10 +1,11 @@
 /** Above a recording that was made by executing a run of a sweep again: which one, and whether it was the same. */
-import './sweeps.css'
+import { Group } from '@mantine/core'
 import { useReruns } from '../../api/sweeps'
 import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
 import { sweepName } from '../../document/sweeps'
+import { Mono } from './Note'
 
 export interface RerunLineProps {
   readonly recording: string
@@ -18,7 +19,16 @@ export function RerunLine({ recording, href, onOpen }: RerunLineProps) {
   const { sweep, rerun: recorded } = rerun
   const { number } = recorded.saved.configuration
   return (
-    <p className="sweep-rerun" role="status">
+    <Group
+      gap="2xs"
+      wrap="nowrap"
+      px="md"
+      py="3xs"
+      fz="0.82rem"
+      bg="var(--surface)"
+      style={{ borderBottom: '1px solid var(--line)' }}
+      role="status"
+    >
       <StatusIcon status={recorded.same ? 'done' : 'warning'} size={15} />
       <span>
         <PageLink href={href(sweep, number)} onOpen={() => onOpen(sweep, number)}>
@@ -28,8 +38,8 @@ export function RerunLine({ recording, href, onOpen }: RerunLineProps) {
         {recorded.same
           ? `the same ${recorded.saved.events} events as in the sweep`
           : `NOT the same events as in the sweep (${recorded.result.events}, then ${recorded.saved.events})`}{' '}
-        <span className="mono quiet">sha256 {recorded.result.events_sha256.slice(0, 12)}</span>
+        <Mono isQuiet>sha256 {recorded.result.events_sha256.slice(0, 12)}</Mono>
       </span>
-    </p>
+    </Group>
   )
 }

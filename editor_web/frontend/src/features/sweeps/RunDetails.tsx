@@ -1,4 +1,5 @@
 /** One run of a sweep: how it ended, with which values, where its time went; and the run itself, executed again. */
+import { ActionIcon, Alert, Anchor, Box, Button, Code, Group, Paper, SimpleGrid, Text, Title } from '@mantine/core'
 import { IconPlayerPlay, IconX } from '@tabler/icons-react'
 import { useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
@@ -9,6 +10,7 @@ import { RunBadge } from '../../components/StatusBadge'
 import { labelOf, short } from '../../document/sweeps'
 import { duration } from '../../document/time'
 import { ShrinkRun } from './ShrinkRun'
+import { Chain, Note } from './Note'
 
 const NODES = 8
 
@@ -31,44 +33,57 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
     element.current?.scrollIntoView({ block: 'nearest' })
   }, [run])
   return (
-    <section ref={element} className="sweep-card sweep-details" aria-label={`Run ${number}`}>
-      <header className="sweep-card-head">
-        <h2>Run {number}</h2>
+    <Paper
+      component="section"
+      ref={element}
+      withBorder
+      radius="md"
+      px="sm"
+      py="xs"
+      mt="4xs"
+      mb="sm"
+      bg="var(--canvas)"
+      style={{ scrollMargin: '80px 0 20px' }}
+      aria-label={`Run ${number}`}
+    >
+      <Group gap="xs">
+        <Title order={2} fz="0.92rem">
+          Run {number}
+        </Title>
         {run && <RunBadge run={run} />}
-        <span className="spacer" />
-        <button type="button" className="command is-quiet" aria-label={`Close run ${number}`} onClick={onClose}>
+        <ActionIcon variant="subtle" color="gray" size="sm" ml="auto" aria-label={`Close run ${number}`} onClick={onClose}>
           <IconX size={15} aria-hidden />
-        </button>
-      </header>
+        </ActionIcon>
+      </Group>
       {problem && (
-        <p className="is-failed" role="alert">
+        <Alert color="red" variant="light" p="xs">
           {problem}
-        </p>
+        </Alert>
       )}
       {run && (
         <>
-          {run.cause && <p className="sweep-chain">{run.cause}</p>}
+          {run.cause && <Chain cause={run.cause} />}
           {mayOperate && <Again sweep={sweep} run={run} onOpen={onOpen} />}
           {!run.success && <ShrinkRun sweep={sweep} run={run} subject={subject} mayOperate={mayOperate} onOpenSweep={onOpenSweep} />}
           <Facts run={run} />
-          <p className="quiet sweep-note">
+          <Note isQuiet>
             In a terminal:{' '}
-            <code className="sweep-command">
+            <Code>
               flexcell sweep rerun {sweep} {number}
-            </code>
+            </Code>
             {!run.success && (
               <>
                 {' '}
                 and{' '}
-                <code className="sweep-command">
+                <Code>
                   flexcell sweep shrink {sweep} {number}
-                </code>
+                </Code>
               </>
             )}
-          </p>
+          </Note>
         </>
       )}
-    </section>
+    </Paper>
   )
 }
 
@@ -77,7 +92,7 @@ function Facts({ run }: { readonly run: TrialResult }) {
     .map(([path, time]) => [path, time?.total_s ?? 0] as const)
     .toSorted((left, right) => right[1] - left[1])
   return (
-    <dl className="sweep-facts">
+    <SimpleGrid component="dl" minColWidth="15rem" spacing="lg" verticalSpacing={2} my="2xs" fz="0.82rem">
       <Fact name="duration" value={duration(run.duration_s)} />
       <Fact name="seed" value={String(run.configuration.seed)} />
       {Object.entries(run.configuration.values).map(([address, value]) => (
@@ -92,15 +107,19 @@ function Facts({ run }: { readonly run: TrialResult }) {
       {Object.entries(run.outputs).map(([key, value]) => (
         <Fact key={`output ${key}`} name={`output ${key}`} value={short(value)} />
       ))}
-    </dl>
+    </SimpleGrid>
   )
 }
 
 function Fact({ name, value }: { readonly name: string; readonly value: string }) {
   return (
     <>
-      <dt className="mono">{name}</dt>
-      <dd>{value}</dd>
+      <Text component="dt" inherit ff="monospace" c="dimmed" style={{ overflowWrap: 'anywhere' }}>
+        {name}
+      </Text>
+      <Text component="dd" inherit m={0} style={{ fontVariantNumeric: 'tabular-nums' }}>
+        {value}
+      </Text>
     </>
   )
 }
@@ -133,35 +152,40 @@ function Again({
   }
 
   return (
-    <div className="sweep-again">
-      <button type="button" className="command is-strong" aria-disabled={isAsking || undefined} onClick={() => !isAsking && void again()}>
-        <IconPlayerPlay size={15} aria-hidden />
+    <Box my="2xs">
+      <Button
+        size="compact-sm"
+        aria-disabled={isAsking || undefined}
+        data-disabled={isAsking}
+        onClick={() => !isAsking && void again()}
+        leftSection={<IconPlayerPlay size={15} aria-hidden />}
+      >
         {isAsking ? 'Executing it again …' : 'Open with graph, timeline and 3D'}
-      </button>
-      <p className="quiet sweep-note" role="status">
+      </Button>
+      <Note isQuiet role="status">
         {isAsking
           ? 'The run is executed again and recorded; it opens when it has ended.'
           : 'Executes this configuration again, and records it.'}
-      </p>
+      </Note>
       {recorded && !recorded.same && (
-        <p className="is-failed" role="alert">
+        <Alert color="red" variant="light" p="xs">
           It ended differently this time: {labelOf(recorded.result)} with {recorded.result.events} events, before {labelOf(recorded.saved)}{' '}
           with {recorded.saved.events}.
           {recorded.recording && (
             <>
               {' '}
-              <button type="button" className="link" onClick={() => onOpen(recorded.recording)}>
+              <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => onOpen(recorded.recording)}>
                 Open it anyway
-              </button>
+              </Anchor>
             </>
           )}
-        </p>
+        </Alert>
       )}
       {problem && (
-        <p className="is-failed" role="alert">
+        <Alert color="red" variant="light" p="xs">
           {problem}
-        </p>
+        </Alert>
       )}
-    </div>
+    </Box>
   )
 }

@@ -1,8 +1,10 @@
 /** Runs over two factors, by shape and colour of how they ended; a click or the keyboard chooses one. */
+import { Group, NativeSelect, Text } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useId, useMemo, useState, type KeyboardEvent } from 'react'
 import type { TrialResult } from '../../api/types'
 import { axisScale, cellOf, labelOf, scatterAxes, short } from '../../document/sweeps'
+import classes from './drawings.module.css'
 
 const HEIGHT = 300
 const LEFT = 70
@@ -25,22 +27,22 @@ export function RunScatter({ runs, factors, selected, onSelect }: RunScatterProp
   const y = chosen && axes.includes(chosen.y) ? chosen.y : (axes[1] ?? 'duration')
   return (
     <>
-      <div className="sweep-axes">
+      <Group gap="md" mb="3xs">
         <AxisChoice label="Across" axes={axes} value={x} onChoose={(axis) => setChosen({ x: axis, y })} />
         <AxisChoice label="Upwards" axes={axes} value={y} onChoose={(axis) => setChosen({ x, y: axis })} />
-      </div>
+      </Group>
       <Points runs={runs} x={x} y={y} selected={selected} onSelect={onSelect} />
-      <p className="sweep-legend quiet">
-        <svg width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
-          <circle className="sweep-good" r={4} />
+      <Group gap="2xs" mt="4xs" fz="0.78rem" c="dimmed">
+        <svg className={classes.drawing} width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
+          <circle className="good" r={4} />
         </svg>{' '}
         succeeded
-        <svg width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
-          <path className="sweep-bad" d={CROSS} />
+        <svg className={classes.drawing} width={12} height={12} viewBox="-6 -6 12 12" aria-hidden>
+          <path className="bad" d={CROSS} />
         </svg>{' '}
         did not
         <span>Arrow keys go from run to run, Enter chooses.</span>
-      </p>
+      </Group>
     </>
   )
 }
@@ -58,15 +60,18 @@ function AxisChoice({
   readonly value: string
   readonly onChoose: (axis: string) => void
 }) {
+  const id = useId()
   return (
-    <label>
-      {label}
-      <select className="new-input" value={value} onChange={(event) => onChoose(event.currentTarget.value)}>
+    <Group gap="3xs" wrap="nowrap">
+      <Text component="label" htmlFor={id} fz="0.8rem">
+        {label}
+      </Text>
+      <NativeSelect id={id} size="xs" maw="13rem" value={value} onChange={(event) => onChoose(event.currentTarget.value)}>
         {axes.map((axis) => (
           <option key={axis}>{axis}</option>
         ))}
-      </select>
-    </label>
+      </NativeSelect>
+    </Group>
   )
 }
 
@@ -102,7 +107,7 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
   return (
     <div ref={ref}>
       <svg
-        className="sweep-plot sweep-scatter"
+        className={`${classes.drawing} ${classes.plot}`}
         viewBox={`0 0 ${wide} ${HEIGHT}`}
         height={HEIGHT}
         role="listbox"
@@ -113,7 +118,7 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
         onBlur={() => setActive(undefined)}
       >
         <g aria-hidden>
-          <rect className="sweep-frame" x={LEFT} y={TOP} width={wide - LEFT - RIGHT} height={HEIGHT - TOP - BOTTOM} />
+          <rect className="frame" x={LEFT} y={TOP} width={wide - LEFT - RIGHT} height={HEIGHT - TOP - BOTTOM} />
           {across.marks.map(({ at, label }, index) => (
             <text key={label} x={px(at)} y={HEIGHT - 10} textAnchor={anchor(index, across.marks.length)}>
               {label}
@@ -127,7 +132,6 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
         </g>
         {drawn.map((run) => {
           const { number } = run.configuration
-          const state = `${number === selected ? ' is-selected' : ''}${number === active ? ' is-active-point' : ''}`
           return (
             <g
               key={number}
@@ -135,13 +139,14 @@ function Points({ runs, x, y, selected, onSelect }: PointsProps) {
               role="option"
               aria-selected={number === selected}
               aria-label={`Run ${number}: ${labelOf(run)}, ${x} ${short(cellOf(run, x))}, ${y} ${short(cellOf(run, y))}`}
-              className={`sweep-point${state}`}
+              className={classes.point}
+              data-active={number === active || undefined}
               transform={`translate(${px(across.of(run))} ${py(upwards.of(run))})`}
               onClick={() => onSelect(number)}
             >
               <title>{`#${number} ${labelOf(run)}`}</title>
-              <circle className="sweep-reach" r={9} />
-              {run.success ? <circle className="sweep-good" r={4} /> : <path className="sweep-bad" d={CROSS} />}
+              <circle r={9} />
+              {run.success ? <circle className="good" r={4} /> : <path className="bad" d={CROSS} />}
             </g>
           )
         })}

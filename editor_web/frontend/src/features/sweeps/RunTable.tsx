@@ -1,4 +1,5 @@
 /** The runs of a sweep as a table, failing ones first, in any order that a person asks for. */
+import { Anchor, Button, Group, Table, UnstyledButton } from '@mantine/core'
 import { IconArrowNarrowDown, IconArrowNarrowUp } from '@tabler/icons-react'
 import { useMemo, useState } from 'react'
 import type { TrialResult } from '../../api/types'
@@ -6,7 +7,11 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
 import { duration } from '../../document/time'
 import { FIRST_ORDER, labelOf, orderedRuns, short, type RunOrder } from '../../document/sweeps'
+import { ResultTable } from './ResultTable'
+import table from './table.module.css'
 
+/** Columns that are no numbers. */
+const TEXTS = new Set(['number', 'ended', 'cause'])
 const FIRST = 15
 const PAGE = 50
 
@@ -30,32 +35,30 @@ export function RunTable({ runs, factors, selected, onSelect }: RunTableProps) {
   ]
   return (
     <>
-      <div className="sweep-scroll" tabIndex={0} role="group" aria-label="Table of runs">
-        <table className="sweep-table sweep-runs">
-          <thead>
-            <tr>
-              {columns.map(({ by, name }) => (
-                <Head key={by} by={by} name={name} order={order} onOrder={setOrder} />
-              ))}
-            </tr>
-          </thead>
-          <tbody>
-            {ordered.slice(0, most).map((run) => (
-              <Row
-                key={run.configuration.number}
-                run={run}
-                factors={factors}
-                isSelected={run.configuration.number === selected}
-                onSelect={onSelect}
-              />
+      <ResultTable label="Table of runs" isChosenFrom>
+        <Table.Thead>
+          <Table.Tr>
+            {columns.map(({ by, name }) => (
+              <Head key={by} by={by} name={name} order={order} onOrder={setOrder} />
             ))}
-          </tbody>
-        </table>
-      </div>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
+          {ordered.slice(0, most).map((run) => (
+            <Row
+              key={run.configuration.number}
+              run={run}
+              factors={factors}
+              isSelected={run.configuration.number === selected}
+              onSelect={onSelect}
+            />
+          ))}
+        </Table.Tbody>
+      </ResultTable>
       {ordered.length > most && (
-        <button type="button" className="command sweep-more" onClick={() => setMost(most + PAGE)}>
+        <Button size="compact-sm" variant="default" mt="2xs" onClick={() => setMost(most + PAGE)}>
           Show more of {ordered.length}
-        </button>
+        </Button>
       )}
     </>
   )
@@ -75,12 +78,17 @@ function Head({
   const isOwn = order.by === by
   const Arrow = order.isFalling ? IconArrowNarrowDown : IconArrowNarrowUp
   return (
-    <th scope="col" aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}>
-      <button type="button" className="sweep-sort" onClick={() => onOrder({ by, isFalling: isOwn && !order.isFalling })}>
+    <Table.Th scope="col" ta={TEXTS.has(by) ? 'left' : 'right'} aria-sort={isOwn ? (order.isFalling ? 'descending' : 'ascending') : 'none'}>
+      <UnstyledButton
+        display="inline-flex"
+        fz="inherit"
+        style={{ alignItems: 'center' }}
+        onClick={() => onOrder({ by, isFalling: isOwn && !order.isFalling })}
+      >
         {name}
         {isOwn && <Arrow size={13} aria-hidden />}
-      </button>
-    </th>
+      </UnstyledButton>
+    </Table.Th>
   )
 }
 
@@ -94,27 +102,35 @@ interface RowProps {
 function Row({ run, factors, isSelected, onSelect }: RowProps) {
   const { number, values } = run.configuration
   return (
-    <tr className={isSelected ? 'is-selected' : undefined} onClick={() => onSelect(number)}>
-      <th scope="row">
-        <button type="button" className="link" aria-pressed={isSelected} aria-label={`Run ${number}`} onClick={() => onSelect(number)}>
+    <Table.Tr data-selected={isSelected || undefined} onClick={() => onSelect(number)}>
+      <Table.Th scope="row">
+        <Anchor
+          c="var(--accent)"
+          component="button"
+          inherit
+          type="button"
+          aria-pressed={isSelected}
+          aria-label={`Run ${number}`}
+          onClick={() => onSelect(number)}
+        >
           #{number}
-        </button>
-      </th>
-      <td>
-        <span className="sweep-outcome">
+        </Anchor>
+      </Table.Th>
+      <Table.Td>
+        <Group gap="3xs" wrap="nowrap">
           <StatusIcon status={run.success ? 'done' : 'failed'} size={14} />
           {labelOf(run)}
-        </span>
-      </td>
-      <td className="sweep-reason" title={run.cause}>
+        </Group>
+      </Table.Td>
+      <Table.Td className={table.cut} maw="24rem" title={run.cause}>
         {run.reason}
-      </td>
-      <td className="is-number">{duration(run.duration_s)}</td>
+      </Table.Td>
+      <Table.Td ta="right">{duration(run.duration_s)}</Table.Td>
       {factors.map((address) => (
-        <td key={address} className="is-number">
+        <Table.Td key={address} ta="right">
           {short(lookup(values, address))}
-        </td>
+        </Table.Td>
       ))}
-    </tr>
+    </Table.Tr>
   )
 }

@@ -1,4 +1,5 @@
 /** The runs of a sweep, failing ones first, or those of one cause; and the one that is chosen. */
+import { Button } from '@mantine/core'
 import type { SweepRuns, TrialResult } from '../../api/types'
 import { RunDetails } from './RunDetails'
 import { RunTable } from './RunTable'
@@ -28,9 +29,9 @@ export function RunsCard({ runs, shown, factors, cause, onShowAll, selected, onS
   return (
     <SweepCard title={runsTitle(shown.length, runs.total, cause !== undefined)} isWide>
       {cause !== undefined && (
-        <button type="button" className="command" onClick={onShowAll}>
+        <Button size="compact-sm" variant="default" onClick={onShowAll}>
           Show all runs
-        </button>
+        </Button>
       )}
       {selected !== undefined && (
         <RunDetails key={selected} {...of} number={selected} onOpen={onOpenRecording} onClose={() => onSelect(undefined)} />

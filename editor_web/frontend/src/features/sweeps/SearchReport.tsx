@@ -1,4 +1,5 @@
 /** What a search for failures has found, as cards: how near, how likely, where, and its runs. It has no success rate. */
+import { Box, Group, SimpleGrid, Stack, Table, Text } from '@mantine/core'
 import { useMemo } from 'react'
 import type { BatchTrace, SearchView, SweepRuns } from '../../api/types'
 import { percent, short } from '../../document/sweeps'
@@ -10,6 +11,8 @@ import { RunScatter } from './RunScatter'
 import { SearchFigure } from './SearchFigure'
 import { SweepCard } from './SweepCard'
 import { useRunsOfCause } from './useRunsOfCause'
+import { Note } from './Note'
+import { ResultTable } from './ResultTable'
 
 export interface SearchReportProps extends Omit<RunsOf, 'sweep' | 'subject'> {
   readonly view: SearchView
@@ -25,11 +28,11 @@ export function SearchReport({ view, runs, ...of }: SearchReportProps) {
   )
   if (view.done === 0) return null
   return (
-    <div className="sweep-cards">
-      <div className="sweep-column">
+    <SimpleGrid cols={{ base: 1, md: 2 }} spacing="sm" px={{ base: 'xs', md: 'md' }} pt="xs" pb="xl" style={{ alignItems: 'start' }}>
+      <Stack gap="sm">
         <SweepCard title="How near to failure">
           <SearchFigure figure={view.figure} selected={of.selected} onSelect={of.onSelect} />
-          <p className="quiet sweep-note">{view.method}</p>
+          <Note isQuiet>{view.method}</Note>
         </SweepCard>
         <SweepCard title="Runs over two factors">
           <RunScatter runs={shown} factors={ordered} selected={of.selected} onSelect={of.onSelect} />
@@ -39,16 +42,20 @@ export function SearchReport({ view, runs, ...of }: SearchReportProps) {
             <NearestRuns view={view} onSelect={of.onSelect} />
           </SweepCard>
         )}
-      </div>
-      <div className="sweep-column">
+      </Stack>
+      <Stack gap="sm">
         <SweepCard title="How likely a failure is">
           {view.probability && (
-            <p className="sweep-likelihood">
-              <strong>{percent(view.probability.estimate)}</strong>
-              <IntervalBar interval={view.probability.interval} rate={view.probability.estimate} isBad />
-            </p>
+            <Group gap="sm" mb="4xs" wrap="nowrap">
+              <Text component="strong" fz="1.35rem" fw={660}>
+                {percent(view.probability.estimate)}
+              </Text>
+              <Box flex={1}>
+                <IntervalBar interval={view.probability.interval} rate={view.probability.estimate} isBad />
+              </Box>
+            </Group>
           )}
-          <p className="sweep-note">{view.likelihood}</p>
+          <Note>{view.likelihood}</Note>
         </SweepCard>
         {view.clusters.length > 0 && (
           <SweepCard title="Where it fails">
@@ -58,7 +65,7 @@ export function SearchReport({ view, runs, ...of }: SearchReportProps) {
         <SweepCard title="Batches">
           <Batches view={view} />
         </SweepCard>
-      </div>
+      </Stack>
       <RunsCard
         {...of}
         sweep={view.line.id}
@@ -69,45 +76,43 @@ export function SearchReport({ view, runs, ...of }: SearchReportProps) {
         cause={cause}
         onShowAll={() => choose(undefined)}
       />
-    </div>
+    </SimpleGrid>
   )
 }
 
 function Batches({ view }: { readonly view: SearchView }) {
   return (
-    <div className="sweep-scroll" tabIndex={0} role="group" aria-label="Table of batches">
-      <table className="sweep-table">
-        <thead>
-          <tr>
-            {['Batch', 'Runs', 'Failures', 'Refused', view.towards].map((name) => (
-              <th key={name} scope="col" className="is-number">
-                {name}
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {view.batches.map((each) => (
-            <Batch key={each.batch} batch={each} />
+    <ResultTable label="Table of batches">
+      <Table.Thead>
+        <Table.Tr>
+          {['Batch', 'Runs', 'Failures', 'Refused', view.towards].map((name) => (
+            <Table.Th key={name} scope="col" ta="right">
+              {name}
+            </Table.Th>
           ))}
-        </tbody>
-      </table>
-    </div>
+        </Table.Tr>
+      </Table.Thead>
+      <Table.Tbody>
+        {view.batches.map((each) => (
+          <Batch key={each.batch} batch={each} />
+        ))}
+      </Table.Tbody>
+    </ResultTable>
   )
 }
 
 function Batch({ batch }: { readonly batch: BatchTrace }) {
   return (
-    <tr>
-      <th scope="row" className="is-number">
+    <Table.Tr>
+      <Table.Th scope="row" ta="right">
         {batch.batch}
-      </th>
+      </Table.Th>
       {[batch.runs, batch.failures, batch.refused].map((count, at) => (
-        <td key={at} className="is-number">
+        <Table.Td key={at} ta="right">
           {count}
-        </td>
+        </Table.Td>
       ))}
-      <td className="is-number">{batch.nearest === null ? '–' : short(batch.nearest)}</td>
-    </tr>
+      <Table.Td ta="right">{batch.nearest === null ? '–' : short(batch.nearest)}</Table.Td>
+    </Table.Tr>
   )
 }

@@ -1,11 +1,13 @@
 /** Shrinks a failing run to the smallest change from nominal that still fails, and saves that as a test case. */
+import { Alert, Button, Group, NativeSelect, Paper, Progress, Text } from '@mantine/core'
 import { IconArrowsMinimize, IconPlayerStop } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useId, useState } from 'react'
 import { sweepsApi } from '../../api/sweeps'
 import type { ShrinkBody, Shrinking, TrialResult } from '../../api/types'
 import { foundOf } from '../../document/searches'
 import { ShrunkChange } from './ShrunkChange'
 import { useShrinking } from './useShrinking'
+import { Mono, Note, PartTitle } from './Note'
 
 export interface ShrinkRunProps {
   readonly sweep: string
@@ -19,6 +21,7 @@ type Same = NonNullable<ShrinkBody['same']>
 
 export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: ShrinkRunProps) {
   const { number } = run.configuration
+  const id = useId()
   const { shrinking, problem, request } = useShrinking(sweep, number)
   const [same, setSame] = useState<Same>('outcome')
   const found = foundOf(shrinking, subject, run.configuration)
@@ -26,10 +29,23 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
   const words = problem || shrinking?.problem
   if (!mayOperate && !found && !isRunning) return null
   return (
-    <section className="sweep-shrink" aria-label="The smallest change that fails">
-      <h3 className="sweep-subtitle">The smallest change that fails</h3>
+    <Paper
+      component="section"
+      withBorder
+      radius="md"
+      px="sm"
+      py="2xs"
+      my="xs"
+      bg="var(--surface)"
+      aria-label="The smallest change that fails"
+    >
+      <PartTitle>The smallest change that fails</PartTitle>
       {isRunning && (
-        <Progress shrinking={shrinking} mayOperate={mayOperate} onStop={() => void request(() => sweepsApi.stopShrinking(sweep, number))} />
+        <ShrinkProgress
+          shrinking={shrinking}
+          mayOperate={mayOperate}
+          onStop={() => void request(() => sweepsApi.stopShrinking(sweep, number))}
+        />
       )}
       {!isRunning && found && shrinking && (
         <ShrunkChange
@@ -43,37 +59,41 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
       )}
       {!isRunning && mayOperate && (
         <>
-          <div className="sweep-shrink-start">
-            <button type="button" className="command" onClick={() => void request(() => sweepsApi.shrink(sweep, number, { same }))}>
-              <IconArrowsMinimize size={15} aria-hidden />
+          <Group gap="xs" my="3xs">
+            <Button
+              size="compact-sm"
+              variant="default"
+              onClick={() => void request(() => sweepsApi.shrink(sweep, number, { same }))}
+              leftSection={<IconArrowsMinimize size={15} aria-hidden />}
+            >
               {found ? 'Shrink it again' : 'Shrink this run'}
-            </button>
-            <label>
-              as long as{' '}
-              <select className="new-input" value={same} onChange={(event) => setSame(event.currentTarget.value as Same)}>
-                <option value="outcome">it ends the same way</option>
-                <option value="cause">its root cause is the same too</option>
-              </select>
-            </label>
-          </div>
+            </Button>
+            <Text component="label" htmlFor={id} fz="0.82rem">
+              as long as
+            </Text>
+            <NativeSelect id={id} size="xs" value={same} onChange={(event) => setSame(event.currentTarget.value as Same)}>
+              <option value="outcome">it ends the same way</option>
+              <option value="cause">its root cause is the same too</option>
+            </NativeSelect>
+          </Group>
           {!found && (
-            <p className="quiet sweep-note">
+            <Note isQuiet>
               Takes chance out, sets factors back to nominal, and moves the others towards it. That takes some tens of runs, in a process
               with a low priority.
-            </p>
+            </Note>
           )}
         </>
       )}
       {words && (
-        <p className="is-failed" role="alert">
+        <Alert color="red" variant="light" p="xs">
           {words}
-        </p>
+        </Alert>
       )}
-    </section>
+    </Paper>
   )
 }
 
-function Progress({
+function ShrinkProgress({
   shrinking: { status, progress },
   mayOperate,
   onStop,
@@ -86,27 +106,29 @@ function Progress({
   const runs = progress?.runs ?? 0
   return (
     <>
-      <div className="sweep-shrink-start">
-        <progress max={progress?.most_runs ?? 1} value={runs} aria-label={`${runs} runs tried`} />
+      <Group gap="xs" my="3xs">
+        <Progress flex="1 1 12rem" size="sm" value={(100 * runs) / (progress?.most_runs ?? 1)} aria-label={`${runs} runs tried`} />
         {mayOperate && (
-          <button
-            type="button"
-            className="command is-danger"
+          <Button
+            size="compact-sm"
+            variant="default"
+            c="var(--failed)"
             aria-disabled={isStopping || undefined}
+            data-disabled={isStopping}
             onClick={() => !isStopping && onStop()}
+            leftSection={<IconPlayerStop size={15} aria-hidden />}
           >
-            <IconPlayerStop size={15} aria-hidden />
             {isStopping ? 'Stopping …' : 'Stop with the smallest so far'}
-          </button>
+          </Button>
         )}
-      </div>
-      <p className="sweep-note" role="status">
+      </Group>
+      <Note role="status">
         {progress ? `${progress.runs} of at most ${progress.most_runs} runs tried: ${progress.step}` : 'Loading what the runs need'}
-      </p>
+      </Note>
       {progress && (
-        <p className="quiet sweep-note">
-          Still varied: <span className="mono">{progress.changed.join(', ') || 'nothing'}</span>
-        </p>
+        <Note isQuiet>
+          Still varied: <Mono>{progress.changed.join(', ') || 'nothing'}</Mono>
+        </Note>
       )}
     </>
   )

@@ -1,8 +1,11 @@
 /** What is left of a failing run, one factor a row, and saving it as a test case. */
+import { Anchor, Button, Code, Group, Table, TextInput } from '@mantine/core'
 import { useState } from 'react'
 import type { Shrunk } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { chanceText, proposedCase, shrunkRows } from '../../document/searches'
+import { Chain, Note } from './Note'
+import { ResultTable } from './ResultTable'
 
 export interface ShrunkChangeProps {
   readonly sweep: string
@@ -20,44 +23,42 @@ export function ShrunkChange({ sweep, number, found, savedAs, onSave, onOpenSwee
   return (
     <>
       {rows.length > 0 && (
-        <div className="sweep-scroll" tabIndex={0} role="group" aria-label="The smallest change from nominal">
-          <table className="sweep-table">
-            <thead>
-              <tr>
-                <th scope="col">Factor</th>
-                <th scope="col" className="is-number">
-                  Nominal
-                </th>
-                <th scope="col" className="is-number">
-                  Fails with
-                </th>
-                <th scope="col" className="is-number">
-                  Does not fail so with
-                </th>
-              </tr>
-            </thead>
-            <tbody>
-              {rows.map((row) => (
-                <tr key={row.address}>
-                  <th scope="row" className="mono">
-                    {row.address}
-                  </th>
-                  <td className="is-number">{row.nominal}</td>
-                  <td className="is-number">
-                    <strong>{row.failing}</strong>
-                  </td>
-                  <td className="is-number">{row.passing || '–'}</td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
-        </div>
+        <ResultTable label="The smallest change from nominal">
+          <Table.Thead>
+            <Table.Tr>
+              <Table.Th scope="col">Factor</Table.Th>
+              <Table.Th scope="col" ta="right">
+                Nominal
+              </Table.Th>
+              <Table.Th scope="col" ta="right">
+                Fails with
+              </Table.Th>
+              <Table.Th scope="col" ta="right">
+                Does not fail so with
+              </Table.Th>
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
+            {rows.map((row) => (
+              <Table.Tr key={row.address}>
+                <Table.Th scope="row" ff="monospace">
+                  {row.address}
+                </Table.Th>
+                <Table.Td ta="right">{row.nominal}</Table.Td>
+                <Table.Td ta="right">
+                  <strong>{row.failing}</strong>
+                </Table.Td>
+                <Table.Td ta="right">{row.passing || '–'}</Table.Td>
+              </Table.Tr>
+            ))}
+          </Table.Tbody>
+        </ResultTable>
       )}
-      <p className="sweep-note">{chanceText(found)}</p>
-      {found.result.cause && <p className="sweep-chain">{found.result.cause}</p>}
-      <p className="quiet sweep-note">
+      <Note>{chanceText(found)}</Note>
+      {found.result.cause && <Chain cause={found.result.cause} />}
+      <Note isQuiet>
         {found.interrupted ? `Stopped after ${found.runs} runs: a smaller change may fail too.` : `Found in ${found.runs} runs.`}
-      </p>
+      </Note>
       {savedAs ? (
         <Saved file={savedAs} onOpenSweep={onOpenSweep} />
       ) : (
@@ -79,36 +80,38 @@ function SaveCase({ proposed, onSave }: { readonly proposed: string; readonly on
 
   return (
     <form
-      className="sweep-shrink-start"
       onSubmit={(event) => {
         event.preventDefault()
         if (!isSaving) void save()
       }}
     >
-      <button type="submit" className="command is-strong" aria-disabled={isSaving || undefined}>
-        {isSaving ? 'Saving …' : 'Save as a test case'}
-      </button>
-      <input
-        className="new-input mono sweep-shrink-file"
-        aria-label="File of the test case"
-        value={file}
-        onChange={(event) => setFile(event.currentTarget.value)}
-      />
+      <Group gap="xs" my="3xs">
+        <Button size="xs" type="submit" aria-disabled={isSaving || undefined} data-disabled={isSaving}>
+          {isSaving ? 'Saving …' : 'Save as a test case'}
+        </Button>
+        <TextInput
+          size="xs"
+          flex="0 1 24rem"
+          aria-label="File of the test case"
+          value={file}
+          onChange={(event) => setFile(event.currentTarget.value)}
+        />
+      </Group>
     </form>
   )
 }
 
 function Saved({ file, onOpenSweep }: { readonly file: string; readonly onOpenSweep: (id: string) => void }) {
   return (
-    <p className="sweep-note sweep-outcome" role="status">
+    <Group gap="3xs" wrap="nowrap" fz="0.82rem" role="status">
       <StatusIcon status="done" size={14} />
       <span>
         Saved as{' '}
-        <button type="button" className="link" onClick={() => onOpenSweep(file)}>
+        <Anchor c="var(--accent)" component="button" inherit type="button" onClick={() => onOpenSweep(file)}>
           {file}
-        </button>
-        , which fails until it is mended. pytest collects the folders in <code className="sweep-command">flexcell_sweeps</code>.
+        </Anchor>
+        , which fails until it is mended. pytest collects the folders in <Code>flexcell_sweeps</Code>.
       </span>
-    </p>
+    </Group>
   )
 }

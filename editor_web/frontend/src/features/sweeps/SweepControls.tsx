@@ -1,10 +1,13 @@
 /** How far a sweep is, and starting, stopping and continuing it. */
+import { Alert, Button, Progress, Text } from '@mantine/core'
 import { IconPlayerPlay, IconPlayerStop } from '@tabler/icons-react'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { sweepsApi } from '../../api/sweeps'
 import type { SweepLive } from '../../api/types'
 import { intervalText, percent, rateOf, speedText } from '../../document/sweeps'
+import { Note } from './Note'
+import { BigFigure } from './BigFigure'
 
 export interface SweepControlsProps {
   readonly sweep: string
@@ -35,39 +38,47 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
   return (
     <>
       {mayOperate && live.status === 'idle' && left > 0 && (
-        <button
-          type="button"
-          className="command is-strong"
+        <Button
+          size="xs"
           aria-disabled={isStarting || isOver || undefined}
+          data-disabled={isStarting || isOver}
           title={isOver ? `${over}: no run would be executed` : undefined}
+          leftSection={<IconPlayerPlay size={15} aria-hidden />}
           onClick={() => !isStarting && !isOver && void start(false)}
         >
-          <IconPlayerPlay size={15} aria-hidden />
           {isStarting ? 'Starting …' : live.done === 0 ? `Start ${left} runs` : `Go on with ${left} runs`}
-        </button>
+        </Button>
       )}
       {mayOperate && live.status === 'idle' && broken > 0 && (
-        <button type="button" className="command" aria-disabled={isStarting || undefined} onClick={() => !isStarting && void start(true)}>
+        <Button
+          size="xs"
+          variant="default"
+          aria-disabled={isStarting || undefined}
+          data-disabled={isStarting}
+          onClick={() => !isStarting && void start(true)}
+        >
           Try {broken} crashed {broken === 1 ? 'run' : 'runs'} again
-        </button>
+        </Button>
       )}
       {mayOperate && live.status !== 'idle' && (
-        <button
-          type="button"
-          className="command is-danger"
+        <Button
+          size="xs"
+          variant="default"
+          c="var(--failed)"
           aria-disabled={live.status === 'stopping' || undefined}
+          data-disabled={live.status === 'stopping'}
           onClick={() => {
             if (live.status === 'running') void sweepsApi.stop(sweep).catch((error: unknown) => setProblem(wordsOf(error)))
           }}
+          leftSection={<IconPlayerStop size={15} aria-hidden />}
         >
-          <IconPlayerStop size={15} aria-hidden />
           {live.status === 'stopping' ? 'Stopping …' : 'Stop the sweep'}
-        </button>
+        </Button>
       )}
       {(problem || live.problem) && (
-        <p className="is-failed sweep-problem" role="alert">
+        <Alert color="red" variant="light" p="xs" flex="1 1 100%">
           {problem || live.problem}
-        </p>
+        </Alert>
       )}
     </>
   )
@@ -79,19 +90,39 @@ function overText({ verdict, search }: SweepLive): string {
   return verdict === 'passed' || verdict === 'failed' ? 'what is required is decided' : ''
 }
 
+/** How much of what is planned is done, in percent. */
+export function shareDone({ done, planned }: SweepLive): number {
+  return (100 * done) / Math.max(planned, 1)
+}
+
 /** The bar with the runs that are done, and what they say until now. */
 export function SweepProgress({ live }: { readonly live: SweepLive }) {
   const speed = speedText(live)
   const over = live.status === 'idle' && live.done < live.planned ? overText(live) : ''
   return (
-    <div className="sweep-progress">
-      <progress max={Math.max(live.planned, 1)} value={live.done} aria-label={`${live.done} of ${live.planned} runs are done`} />
-      <p className="sweep-note" role={live.status === 'idle' ? undefined : 'status'}>
+    <div>
+      <Progress size="sm" value={shareDone(live)} aria-label={`${live.done} of ${live.planned} runs are done`} />
+      <Note role={live.status === 'idle' ? undefined : 'status'}>
         {live.done} of {live.planned} runs
-        {live.status !== 'idle' && speed && <span className="quiet"> · {speed}</span>}
-        {over && <span className="quiet"> · {over}: no more are needed</span>}
-        {live.status === 'running' && !speed && <span className="quiet"> · loading what the runs need</span>}
-      </p>
+        {live.status !== 'idle' && speed && (
+          <Text span inherit c="dimmed">
+            {' '}
+            · {speed}
+          </Text>
+        )}
+        {over && (
+          <Text span inherit c="dimmed">
+            {' '}
+            · {over}: no more are needed
+          </Text>
+        )}
+        {live.status === 'running' && !speed && (
+          <Text span inherit c="dimmed">
+            {' '}
+            · loading what the runs need
+          </Text>
+        )}
+      </Note>
     </div>
   )
 }
@@ -100,12 +131,16 @@ export function SweepProgress({ live }: { readonly live: SweepLive }) {
 export function SuccessRate({ live }: { readonly live: SweepLive }) {
   const rate = rateOf(live)
   return (
-    <p className="sweep-success">
-      <strong>{rate === undefined ? '–' : percent(rate)}</strong>
+    <BigFigure figure={rate === undefined ? '–' : percent(rate)}>
       <span>
         {rate === undefined ? 'No run has ended yet' : `${live.successes} of ${live.looked_at} succeeded`}
-        {live.interval && rate !== undefined && <span className="quiet"> · the rate is {intervalText(live.interval)}</span>}
+        {live.interval && rate !== undefined && (
+          <Text span inherit c="dimmed">
+            {' '}
+            · the rate is {intervalText(live.interval)}
+          </Text>
+        )}
       </span>
-    </p>
+    </BigFigure>
   )
 }

@@ -1,14 +1,17 @@
 /** The sweeps of the project with what they have shown, and results that no document asks for. */
+import { Box, Group, List, Progress, Text } from '@mantine/core'
 import { IconChartDots } from '@tabler/icons-react'
 import type { SweepLine, SweepList as Listed, UndescribedResults } from '../../api/types'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
-import { StatusIcon } from '../../components/StatusIcon'
+import { StatusBadge } from '../../components/StatusBadge'
 import { lookup } from '../../document/dict'
 import { designText, failuresText } from '../../document/searches'
 import { currentLive, intervalText, percent, rateOf, speedText, sweepName } from '../../document/sweeps'
 import { VerdictBadge } from './VerdictBadge'
+import { Mono, Note } from './Note'
+import { shareDone } from './SweepControls'
 
 export interface SweepListProps {
   readonly listed: Listed
@@ -26,11 +29,11 @@ export function SweepList({ listed, href, onOpen }: SweepListProps) {
     )
   }
   return (
-    <ul className="plain-list sweep-list" aria-label="Sweeps">
+    <List listStyleType="none" aria-label="Sweeps">
       {listed.sweeps.map((line) => (
         <Line key={line.id} line={line} href={href(line.id)} onOpen={() => onOpen(line.id)} />
       ))}
-    </ul>
+    </List>
   )
 }
 
@@ -39,66 +42,74 @@ function Line({ line, href, onOpen }: { readonly line: SweepLine; readonly href:
   const live = currentLive(line, reported)
   const rate = rateOf(live)
   return (
-    <li className="sweep-line">
-      <div className="sweep-line-head">
-        <PageLink href={href} className="sweep-line-name" onOpen={onOpen}>
-          {sweepName(line.id)}
-        </PageLink>
-        {live.status !== 'idle' && (
-          <span className="badge is-active">
-            <StatusIcon status="active" size={13} />
-            {live.status}
-          </span>
-        )}
+    <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }}>
+      <Group gap="xs">
+        <Text fz="1rem" fw={640} style={{ overflowWrap: 'anywhere' }}>
+          <PageLink href={href} onOpen={onOpen}>
+            {sweepName(line.id)}
+          </PageLink>
+        </Text>
+        {live.status !== 'idle' && <StatusBadge look="active" words={live.status} />}
         <VerdictBadge live={live} require={line.require} />
-      </div>
-      <p className="quiet sweep-note">{[line.description, line.behavior, designText(line)].filter(Boolean).join(' · ')}</p>
+      </Group>
+      <Note isQuiet>{[line.description, line.behavior, designText(line)].filter(Boolean).join(' · ')}</Note>
       {line.problem ? (
-        <p className="is-failed sweep-note">{line.problem}</p>
+        <Text fz="0.82rem" c="var(--failed)">
+          {line.problem}
+        </Text>
       ) : (
-        <p className="sweep-note sweep-line-facts">
+        <Group gap="md" my={2} fz="0.82rem" style={{ fontVariantNumeric: 'tabular-nums' }}>
           <span>
             {live.done} of {live.planned} runs
           </span>
           {live.search && live.done > 0 && <span>{failuresText(live.search)}</span>}
           {rate !== undefined && (
             <span>
-              {percent(rate)} succeeded{live.interval && <span className="quiet"> ({intervalText(live.interval)})</span>}
+              {percent(rate)} succeeded
+              {live.interval && (
+                <Text span inherit c="dimmed">
+                  {' '}
+                  ({intervalText(live.interval)})
+                </Text>
+              )}
             </span>
           )}
-          {live.status === 'running' && <span className="quiet">{speedText(live)}</span>}
-        </p>
+          {live.status === 'running' && (
+            <Text span inherit c="dimmed">
+              {speedText(live)}
+            </Text>
+          )}
+        </Group>
       )}
       {!line.problem && (
-        <progress
-          className="sweep-line-bar"
-          max={Math.max(live.planned, 1)}
-          value={live.done}
+        <Progress
+          size="xs"
+          maw="24rem"
+          mt="3xs"
+          value={shareDone(live)}
           aria-label={`${live.done} of ${live.planned} runs of ${sweepName(line.id)}`}
         />
       )}
-    </li>
+    </Box>
   )
 }
 
 export function OtherResults({ others }: { readonly others: readonly UndescribedResults[] }) {
   return (
     <>
-      <p className="quiet sweep-note">
-        Of the command line, or of versions before a change. They stay until the file of results is deleted.
-      </p>
-      <ul className="plain-list sweep-list" aria-label="Results of no sweep here">
+      <Note isQuiet>Of the command line, or of versions before a change. They stay until the file of results is deleted.</Note>
+      <List listStyleType="none" aria-label="Results of no sweep here">
         {others.map((each) => (
-          <li key={each.subject} className="sweep-line">
-            <p className="sweep-note">
-              {each.behavior || 'A version that is not here any more'} <span className="mono quiet">{each.subject.slice(0, 12)}</span>
-            </p>
-            <p className="quiet sweep-note">
+          <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }} key={each.subject}>
+            <Note>
+              {each.behavior || 'A version that is not here any more'} <Mono isQuiet>{each.subject.slice(0, 12)}</Mono>
+            </Note>
+            <Note isQuiet>
               {each.runs} {each.runs === 1 ? 'run' : 'runs'}, {each.successes} succeeded
-            </p>
-          </li>
+            </Note>
+          </Box>
         ))}
-      </ul>
+      </List>
     </>
   )
 }

@@ -1,4 +1,5 @@
 /** Everything that a sweep has shown, as cards; a chosen cause or point leads to runs, a chosen run to itself. */
+import { SimpleGrid, Stack } from '@mantine/core'
 import { useMemo } from 'react'
 import type { SweepRuns, SweepView } from '../../api/types'
 import { requiredRate } from '../../document/sweeps'
@@ -14,6 +15,7 @@ import { RunsCard, type RunsOf } from './RunsCard'
 import { RunScatter } from './RunScatter'
 import { SweepCard } from './SweepCard'
 import { useRunsOfCause } from './useRunsOfCause'
+import { PartTitle } from './Note'
 
 export interface SweepReportProps extends Omit<RunsOf, 'sweep' | 'subject'> {
   readonly view: SweepView
@@ -29,8 +31,8 @@ export function SweepReport({ view, runs, ...of }: SweepReportProps) {
   )
   if (view.done === 0) return null
   return (
-    <div className="sweep-cards">
-      <div className="sweep-column">
+    <SimpleGrid cols={{ base: 1, md: 2 }} spacing="sm" px={{ base: 'xs', md: 'md' }} pt="xs" pb="xl" style={{ alignItems: 'start' }}>
+      <Stack gap="sm">
         <SweepCard title="Success rate after each run">
           <RateCurve curve={view.curve} required={requiredRate(view.document.require)} />
           <Requirements requirements={view.requirements} />
@@ -43,16 +45,16 @@ export function SweepReport({ view, runs, ...of }: SweepReportProps) {
         <SweepCard title="Distributions">
           <Distributions view={view} />
         </SweepCard>
-      </div>
-      <div className="sweep-column">
+      </Stack>
+      <Stack gap="sm">
         <SweepCard title="How runs ended">
           {view.causes.length > 0 && (
             <>
-              <h3 className="sweep-subtitle">Causes of failures</h3>
+              <PartTitle>Causes of failures</PartTitle>
               <CauseList causes={view.causes} chosen={cause} onChoose={choose} />
             </>
           )}
-          <h3 className="sweep-subtitle">Outcomes</h3>
+          <PartTitle>Outcomes</PartTitle>
           <OutcomeTable outcomes={view.outcomes} done={view.done} />
         </SweepCard>
         <SweepCard title="Compared with another version">
@@ -63,7 +65,7 @@ export function SweepReport({ view, runs, ...of }: SweepReportProps) {
             <FactorEffects effects={view.effects} />
           </SweepCard>
         )}
-      </div>
+      </Stack>
       <RunsCard
         {...of}
         sweep={view.line.id}
@@ -78,6 +80,6 @@ export function SweepReport({ view, runs, ...of }: SweepReportProps) {
         <MissedItems items={view.items} missing={view.missing} />
         <CoveredInputs inputs={view.inputs} />
       </SweepCard>
-    </div>
+    </SimpleGrid>
   )
 }

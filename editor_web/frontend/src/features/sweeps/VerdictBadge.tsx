@@ -1,6 +1,6 @@
 /** Whether what a sweep requires is reached: word, shape and colour. */
 import type { SweepLive } from '../../api/types'
-import { StatusIcon } from '../../components/StatusIcon'
+import { StatusBadge } from '../../components/StatusBadge'
 import { requiredText, verdictWords } from '../../document/sweeps'
 
 export function VerdictBadge({ live, require }: { readonly live: SweepLive; readonly require: string }) {
@@ -8,9 +8,8 @@ export function VerdictBadge({ live, require }: { readonly live: SweepLive; read
   if (!words || require === '') return null
   const [status, word] = live.done > 0 ? words : (['idle', 'Required'] as const)
   return (
-    <span className={`badge is-${status}`} title={require}>
-      <StatusIcon status={status} size={13} />
-      {word}: {requiredText(require)}
+    <span title={require}>
+      <StatusBadge look={status} words={`${word}: ${requiredText(require)}`} />
     </span>
   )
 }

@@ -1,5 +1,5 @@
 /** The last runs of a behavior, newest first: a bar as long as the run took, in the colour of its end. */
-import { Checkbox } from '@mantine/core'
+import { Box, Checkbox, List, Progress, Text } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
 import { RunBadge } from '../../components/StatusBadge'
@@ -17,26 +17,28 @@ interface RunBarsProps {
 export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) {
   const longestS = Math.max(...runs.map((run) => run.duration_s), 1e-9)
   return (
-    <ul className={`plain-list ${styles.runs}`} aria-label="Last runs">
-      {runs.map((run) => (
-        <li key={run.id} className={styles.run}>
-          <Checkbox
-            size="xs"
-            aria-label={`Compare the run of ${wallTime(run.started_at_s)}`}
-            checked={chosen.includes(run.id)}
-            onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
-          />
-          <PageLink href={href(run.id)} title={run.cause} onOpen={() => onOpen(run.id)}>
-            {wallTime(run.started_at_s)}
-          </PageLink>
-          <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
-          <span className={styles.track} aria-hidden>
-            <span className={`${styles.bar} ${styles[endOf(run)]}`} style={{ inlineSize: `${(run.duration_s / longestS) * 100}%` }} />
-          </span>
-          <span className={styles.number}>{duration(run.duration_s)}</span>
-        </li>
-      ))}
-    </ul>
+    <Box h="100%" style={{ overflow: 'auto' }}>
+      <List listStyleType="none" px="md" py="xs" className={styles.runs ?? ''} aria-label="Last runs">
+        {runs.map((run) => (
+          <li key={run.id}>
+            <Checkbox
+              size="xs"
+              aria-label={`Compare the run of ${wallTime(run.started_at_s)}`}
+              checked={chosen.includes(run.id)}
+              onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
+            />
+            <PageLink href={href(run.id)} title={run.cause} onOpen={() => onOpen(run.id)}>
+              {wallTime(run.started_at_s)}
+            </PageLink>
+            <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
+            <Progress w="100%" size="md" value={(run.duration_s / longestS) * 100} color={`var(--${endOf(run)})`} aria-hidden />
+            <Text span inherit ta="right" style={{ fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' }}>
+              {duration(run.duration_s)}
+            </Text>
+          </li>
+        ))}
+      </List>
+    </Box>
   )
 }
 
