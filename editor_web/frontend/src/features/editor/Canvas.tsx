@@ -23,6 +23,7 @@ import { add, choose, chooseArrow, moveInto, type Addition } from './actions'
 import { place } from './placing'
 import { openAddPalette, openPortPalette } from './paletteRequests'
 import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onNodeMenu, onReconnect, onSelectionMenu } from './canvasHandlers'
+import classes from './canvas.module.css'
 import { setCanvasPositions } from './canvasPositions'
 import { drawInBatches } from './batchedDrawing'
 import { EmptyCanvas } from './EmptyCanvas'
@@ -59,7 +60,7 @@ export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: bo
   const [drawn, setDrawn] = useState<Arranged>()
   const isBusy = useIsBusy(drawn)
   return (
-    <div className="edit-canvas" ref={ref} aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
+    <div className={classes['canvas']} ref={ref} data-canvas aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
       {arranged && <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />}
@@ -294,7 +295,10 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   return (
     <ReactFlow<CanvasNode, CanvasEdge>
       ref={element}
-      className={`${isInPlace ? 'is-in-place' : ''}${isConnecting ? ' is-connecting' : ''}${isStale ? ' is-stale' : ''}`}
+      className={classes['flow'] ?? ''}
+      data-in-place={isInPlace || undefined}
+      data-connecting={isConnecting || undefined}
+      data-stale={isStale || undefined}
       nodes={nodes}
       edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
       onlyRenderVisibleElements={hasMany && !isFar}
@@ -354,9 +358,11 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
         <MiniMap
           pannable
           zoomable
-          className="edit-map"
+          style={{ border: '1px solid var(--line)' }}
           ariaLabel="Overview of the canvas"
-          nodeClassName={(node) => `map-${node.type ?? ''}`}
+          nodeColor={({ type }) => (type === 'frame' ? 'none' : 'var(--line-strong)')}
+          nodeStrokeColor={({ type }) => (type === 'frame' ? 'var(--line-strong)' : 'none')}
+          nodeStrokeWidth={6}
         />
       )}
       {isFar && <LowDetailEdges nodes={computed} edges={edges} />}

@@ -1,4 +1,5 @@
 /** Below the field of a named entry: of what kind it is, what is in it, and who changed it last. */
+import { Box, Flex, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { entries } from '../../api/entries'
 import { wordsOf } from '../../api/client'
@@ -6,6 +7,7 @@ import { useLive } from '../../api/live'
 import type { EntryChanged } from '../../api/types'
 import { entryLines, type EntryLine } from '../../document/editing/entryText'
 import { wallTime } from '../../document/time'
+import { FormWords } from './FormParts'
 
 interface Details {
   readonly of: string
@@ -16,12 +18,15 @@ interface Details {
 export function EntryDetails({ kind, name }: { kind: string; name: string }) {
   const [isOpen, setOpen] = useState(false)
   return (
-    <details className="entry-details" onToggle={(event) => setOpen(event.currentTarget.open)}>
+    <Box component="details" fz="xs" mt={3} data-entry onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>
-        About {name} <span className="quiet">{kind}</span>
+        About {name}{' '}
+        <Text span inherit c="dimmed">
+          {kind}
+        </Text>
       </summary>
       {isOpen && <Inside kind={kind} name={name} />}
-    </details>
+    </Box>
   )
 }
 
@@ -42,23 +47,27 @@ function Inside({ kind, name }: { kind: string; name: string }) {
       isCurrent = false
     }
   }, [kind, name, mayCall])
-  if (problem) return <p className="quiet">{problem}</p>
-  if (known?.of !== of || !known.row) return <p className="quiet">{known?.of === of ? 'It is not in the store.' : '…'}</p>
+  if (problem) return <FormWords>{problem}</FormWords>
+  if (known?.of !== of || !known.row) return <FormWords>{known?.of === of ? 'It is not in the store.' : '…'}</FormWords>
   const { row, lines } = known
   const changed = [`revision ${row.revision}`, row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`]
   return (
     <>
-      <p className="quiet">{changed.filter(Boolean).join(', ')}</p>
-      {row.tags.length > 0 && <p className="quiet">{row.tags.join(', ')}</p>}
-      {row.reason && <p className="quiet">{row.reason}</p>}
-      <dl>
+      <FormWords>{changed.filter(Boolean).join(', ')}</FormWords>
+      {row.tags.length > 0 && <FormWords>{row.tags.join(', ')}</FormWords>}
+      {row.reason && <FormWords>{row.reason}</FormWords>}
+      <Box component="dl" m={0}>
         {lines.map((line) => (
-          <div key={line.label}>
-            <dt>{line.label}</dt>
-            <dd className="mono">{line.words}</dd>
-          </div>
+          <Flex key={line.label} justify="space-between" gap="xs">
+            <Text component="dt" inherit c="dimmed">
+              {line.label}
+            </Text>
+            <Box component="dd" m={0} ff="monospace">
+              {line.words}
+            </Box>
+          </Flex>
         ))}
-      </dl>
+      </Box>
     </>
   )
 }

@@ -1,14 +1,19 @@
 /** Notes as slips of paper on the canvas, at the nodes they are about; written in place. */
+import { UnstyledButton } from '@mantine/core'
 import { Panel, useNodes, ViewportPortal } from '@xyflow/react'
 import { useMemo } from 'react'
 import { allNodes, isForeign, ROOT } from '../../document/editing/model'
 import { focusNode } from './actions'
+import classes from './canvas.module.css'
 import type { CanvasNode } from './elements'
 import { nodeBoxes } from './nodeBoxes'
 import { dropNote, keepNote, useNotes, writeNote } from './notes'
 import { rootOf, scopeOf, useEditor } from './store'
 
 const SLIP_PX = 168
+const OVER = { position: 'absolute', top: 0, left: 0, zIndex: 6, pointerEvents: 'all' } as const
+const SCOPE_SLIP_PX = 220
+const WRITTEN_SLIP_PX = 210
 
 export function NoteOverlay() {
   const isShown = useNotes((s) => s.isShown)
@@ -18,8 +23,8 @@ export function NoteOverlay() {
   return (
     <>
       {(scope.notes || writing === scope.path) && (
-        <Panel position="top-left" className="scope-note">
-          <Note path={scope.path} text={scope.notes} />
+        <Panel position="top-left">
+          <Note path={scope.path} text={scope.notes} width={SCOPE_SLIP_PX} />
         </Panel>
       )}
       <NodeNotes />
@@ -43,8 +48,8 @@ function NodeNotes() {
         // Above the right end of the node, where it hides neither its name nor a port.
         const at = { x: box.x + box.width - SLIP_PX, y: box.y - 4 }
         return (
-          <div key={node.path} className="node-note" style={{ transform: `translate(${at.x}px, ${at.y}px) translateY(-100%)` }}>
-            <Note path={node.path} text={node.notes} />
+          <div key={node.path} style={{ ...OVER, transform: `translate(${at.x}px, ${at.y}px) translateY(-100%)` }}>
+            <Note path={node.path} text={node.notes} width={SLIP_PX} />
           </div>
         )
       })}
@@ -52,7 +57,7 @@ function NodeNotes() {
   )
 }
 
-function Note({ path, text }: { path: string; text: string }) {
+function Note({ path, text, width }: { path: string; text: string; width: number }) {
   const isWriting = useNotes((s) => s.writing === path)
   const isOfOther = useEditor((s) => {
     const root = rootOf(s)
@@ -61,21 +66,22 @@ function Note({ path, text }: { path: string; text: string }) {
   const name = path === ROOT ? 'the behavior' : path.slice(path.lastIndexOf('/') + 1)
   if (!isWriting) {
     return (
-      <button
-        type="button"
-        className="note-slip nodrag nopan"
+      <UnstyledButton
+        className={`${classes['slip']} nodrag nopan`}
+        w={width}
         disabled={isOfOther}
         aria-label={`Note on ${name}: ${text}`}
         title="Change it (N)"
         onClick={() => writeNote(path)}
       >
         {text}
-      </button>
+      </UnstyledButton>
     )
   }
   return (
     <textarea
-      className="note-slip nodrag nopan nowheel"
+      className={`${classes['slip']} nodrag nopan nowheel`}
+      style={{ width: Math.max(width, WRITTEN_SLIP_PX) }}
       aria-label={`Note on ${name}`}
       placeholder="Information for editors of the behavior"
       rows={3}
