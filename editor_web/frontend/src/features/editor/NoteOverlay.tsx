@@ -1,5 +1,5 @@
 /** Notes as slips of paper on the canvas, at the nodes they are about; written in place. */
-import { UnstyledButton } from '@mantine/core'
+import { Box, UnstyledButton } from '@mantine/core'
 import { Panel, useNodes, ViewportPortal } from '@xyflow/react'
 import { useMemo } from 'react'
 import { allNodes, isForeign, ROOT } from '../../document/editing/model'
@@ -14,6 +14,26 @@ const SLIP_PX = 168
 const OVER = { position: 'absolute', top: 0, left: 0, zIndex: 6, pointerEvents: 'all' } as const
 const SCOPE_SLIP_PX = 220
 const WRITTEN_SLIP_PX = 210
+
+/** A slip of paper. */
+const SLIP = {
+  px: 9,
+  py: 6,
+  bg: 'var(--paper)',
+  c: 'var(--ink)',
+  bd: '1px solid var(--paper-edge)',
+  bdrs: '3px 3px 10px',
+  fz: 12,
+  lh: 1.35,
+  style: {
+    display: 'block',
+    overflow: 'hidden',
+    boxShadow: 'var(--mantine-shadow-sm)',
+    overflowWrap: 'anywhere',
+    resize: 'none',
+    whiteSpace: 'pre-line',
+  },
+} as const
 
 export function NoteOverlay() {
   const isShown = useNotes((s) => s.isShown)
@@ -67,8 +87,10 @@ function Note({ path, text, width }: { path: string; text: string; width: number
   if (!isWriting) {
     return (
       <UnstyledButton
-        className={`${classes['slip']} nodrag nopan`}
+        {...SLIP}
+        className="nodrag nopan"
         w={width}
+        mah={96}
         disabled={isOfOther}
         aria-label={`Note on ${name}: ${text}`}
         title="Change it (N)"
@@ -79,9 +101,11 @@ function Note({ path, text, width }: { path: string; text: string; width: number
     )
   }
   return (
-    <textarea
+    <Box
+      component="textarea"
+      {...SLIP}
       className={`${classes['slip']} nodrag nopan nowheel`}
-      style={{ width: Math.max(width, WRITTEN_SLIP_PX) }}
+      w={Math.max(width, WRITTEN_SLIP_PX)}
       aria-label={`Note on ${name}`}
       placeholder="Information for editors of the behavior"
       rows={3}

@@ -1,5 +1,5 @@
 /** What the editor has to say: a refusal with its advice, a draft taken up again, a file that changed. */
-import { CloseButton, Flex, Paper } from '@mantine/core'
+import { Box, CloseButton, Flex, Paper } from '@mantine/core'
 import { IconAlertTriangle, IconCheck, IconHistory } from '@tabler/icons-react'
 import { useEffect, type ReactNode } from 'react'
 import { LinkButton } from './FormParts'
@@ -8,6 +8,7 @@ import { discard, save } from './session'
 import { editor, setEditor, useEditor } from './store'
 
 const SHORT_MS = 2500
+const TOAST = { zIndex: 20, transform: 'translateX(-50%)', pointerEvents: 'none' } as const
 
 export function NoticeLine() {
   const notice = useEditor((s) => s.notice)
@@ -43,7 +44,7 @@ export function NoticeLine() {
           <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ notice: undefined })} />
         </Note>
       )}
-      <div className={classes['toast']} role="status">
+      <Box pos="absolute" bottom={20} left="50%" style={TOAST} role="status">
         {notice?.tone === 'done' && (
           <Paper shadow="md" px="md" py={6} bg="var(--text)" c="var(--surface)" radius="xl">
             <Flex align="center" gap={6} fz="sm" fw={550}>
@@ -51,7 +52,7 @@ export function NoticeLine() {
             </Flex>
           </Paper>
         )}
-      </div>
+      </Box>
     </>
   )
 }

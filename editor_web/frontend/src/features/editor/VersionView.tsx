@@ -1,5 +1,5 @@
 /** Two versions side by side: what differs in words, on both drawings, and in the text; one alone read-only. */
-import { Box, Code, Group, SimpleGrid, Stack, Tabs, Text } from '@mantine/core'
+import { Box, Code, Flex, Group, SimpleGrid, Stack, Tabs, Text } from '@mantine/core'
 import { useEffect, useMemo, useState, type ReactNode } from 'react'
 import type { DocumentDiff } from '../../api/types'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange, type Marking } from '../../document/editing/changes'
@@ -68,6 +68,7 @@ export function VersionView({ before, after, difference }: VersionViewProps) {
 
 const ROW_PX = 1100
 const HALF_ROW_PX = 640
+const EDGES: Readonly<Record<string, string>> = { added: 'var(--done)', removed: 'var(--failed)' }
 const NO_MARKS: ReadonlyMap<string, Marking> = new Map()
 
 function Changes({ before, after, difference }: { before: Shown; after: Shown; difference: DocumentDiff | undefined }) {
@@ -85,14 +86,23 @@ function Changes({ before, after, difference }: { before: Shown; after: Shown; d
         <PlainList label="What differs">
           {difference.layout_only && <li>Only places on the canvas differ.</li>}
           {words.map((each, index) => (
-            <li key={index} className={classes['change']} data-kind={each.kind}>
+            <Flex
+              key={index}
+              component="li"
+              wrap="wrap"
+              columnGap="sm"
+              px={10}
+              py={3}
+              fz="sm"
+              style={{ borderLeft: `3px solid ${EDGES[each.kind] ?? 'var(--stopped)'}` }}
+            >
               <strong>{each.title}</strong>
               {each.lines.map((line, at) => (
                 <Text key={at} span inherit c="dimmed">
                   {line}
                 </Text>
               ))}
-            </li>
+            </Flex>
           ))}
         </PlainList>
       </Box>
