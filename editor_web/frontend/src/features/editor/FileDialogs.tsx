@@ -115,7 +115,7 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
           ref={first}
           label="Name of the file"
           value={name}
-          error={problem !== undefined}
+          error={problem !== undefined && to !== id}
           onChange={(event) => setName(event.currentTarget.value)}
         />
         <TextInput label="Folder, if any" value={folder} onChange={(event) => setFolder(event.currentTarget.value)} />
