@@ -118,7 +118,7 @@ def test_an_arrow_is_deleted_and_its_end_drawn_elsewhere(browser: Browser, shop:
     with at_editor(browser, shop, SHIFT_ID) as page:
         edge(page, "root|set|done")
         page.keyboard.press("Delete")
-        expect(port(page, "root/set", "done").locator("..")).to_contain_class("is-loose")
+        expect(port(page, "root/set", "done").locator("..")).to_have_attribute("data-loose", "true")
         behavior_text = file_text(shop, SHIFT_ID)
         page.keyboard.press("Control+z")
         expect(page.locator(".react-flow__edge[data-id='root|set|done']")).to_have_count(1)
