@@ -180,7 +180,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
       <NoticeLine />
       {isNarrow ? (
-        <Tabs defaultValue="canvas" className={classes['tabs']} data-narrow>
+        <Tabs defaultValue="canvas" className={classes['tabs']}>
           <Tabs.List>
             <Tabs.Tab value="canvas">Canvas</Tabs.Tab>
             <Tabs.Tab value="library">Library</Tabs.Tab>
