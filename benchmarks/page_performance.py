@@ -116,12 +116,12 @@ def served(states: int) -> Generator[str]:
 
 def in_place(page: Page) -> None:
     """Wait until the editor has drawn the document."""
-    expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=_LIMIT_MS)
-    expect(page.locator(".edit-canvas")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
+    expect(page.locator(".react-flow[data-in-place] .react-flow__node").first).to_be_visible(timeout=_LIMIT_MS)
+    expect(page.locator("[data-canvas]")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
 
 
 _OPENED = """() => new Promise((resolve) => {
-    const look = () => document.querySelector('.react-flow.is-in-place .react-flow__node')
+    const look = () => document.querySelector('.react-flow[data-in-place] .react-flow__node')
         ? requestAnimationFrame(() => setTimeout(() => resolve(performance.now())))
         : requestAnimationFrame(look)
     look()
@@ -215,8 +215,8 @@ def editing(trial: Trial, page: Page, words: str, node: str) -> None:
 
 def idle(page: Page) -> None:
     """Wait until the server has answered and the canvas shows it."""
-    expect(page.locator(".editor")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
-    expect(page.locator(".edit-canvas")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
+    expect(page.locator("[data-editor]")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
+    expect(page.locator("[data-canvas]")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
 
 
 def open_all(page: Page) -> None:

@@ -126,8 +126,8 @@ def waiting(page: Page) -> None:
 
 def edited(page: Page) -> None:
     """All of it on the canvas, with one state chosen by the address."""
-    expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=LIMIT_MS)
-    expect(page.locator(".card.is-selected").first).to_be_visible(timeout=LIMIT_MS)
+    expect(page.locator(".react-flow[data-in-place] .react-flow__node").first).to_be_visible(timeout=LIMIT_MS)
+    expect(page.locator("[data-card][data-selected]").first).to_be_visible(timeout=LIMIT_MS)
 
 
 def looked_back(page: Page) -> None:

@@ -31,7 +31,7 @@ def at_editor(
         browser, shop.running, f"/edit/{behavior_id}", size=size, scheme=scheme, quiet=quiet, login=login
     ) as page:
         # The first look at a project reads and checks all of its behaviors.
-        expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=GUARD_MS)
+        expect(page.locator(".react-flow[data-in-place] .react-flow__node").first).to_be_visible(timeout=GUARD_MS)
         idle(page)
         yield page
 
@@ -43,7 +43,7 @@ def card(page: Page, path: str) -> Locator:
 
 def port(page: Page, path: str, outcome: str) -> Locator:
     """The port of an outcome."""
-    return card(page, path).locator(f".out-port[data-handleid='{outcome}']")
+    return card(page, path).locator(f".react-flow__handle[data-handleid='{outcome}']")
 
 
 def pill(page: Page, path: str, outcome: str) -> Locator:
@@ -70,13 +70,13 @@ def save(page: Page) -> None:
     """Save by the keyboard, after every edit is done, and see it done."""
     idle(page)
     page.keyboard.press("Control+s")
-    expect(page.locator(".dirty-mark")).to_have_count(0)
+    expect(page.locator("[data-unsaved]")).to_have_count(0)
 
 
 def idle(page: Page) -> None:
     """Wait until the server has answered every edit, and the canvas shows it and rests."""
-    expect(page.locator(".editor")).to_have_attribute("aria-busy", "false")
-    expect(page.locator(".edit-canvas")).to_have_attribute("aria-busy", "false")
+    expect(page.locator("[data-editor]")).to_have_attribute("aria-busy", "false")
+    expect(page.locator("[data-canvas]")).to_have_attribute("aria-busy", "false")
 
 
 def file_text(shop: Workshop, behavior_id: str) -> str:

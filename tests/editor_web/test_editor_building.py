@@ -37,7 +37,7 @@ def test_two_states_are_built_from_nothing_by_mouse_checked_saved_and_run(browse
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("two_steps")
         page.get_by_role("button", name="Create").click()
-        canvas = page.locator(".edit-canvas")
+        canvas = page.locator("[data-canvas]")
         expect(pill(page, "root", "finished")).to_be_visible()
         page.get_by_role("button", name="Add flow.Wait").drag_to(canvas, target_position={"x": 200, "y": 300})
         expect(card(page, "root/wait")).to_be_visible()
@@ -47,10 +47,10 @@ def test_two_states_are_built_from_nothing_by_mouse_checked_saved_and_run(browse
         expect(card(page, "root/log")).to_be_visible()
         page.get_by_role("combobox", name="message").fill("done waiting")
         page.get_by_role("combobox", name="message").press("Tab")
-        expect(page.locator(".transition-row.is-loose")).to_have_count(1)
+        expect(page.locator("[data-outcome][data-loose]")).to_have_count(1)
         drag(page, port(page, "root/log", "done"), pill(page, "root", "finished"))
-        expect(page.locator(".transition-row.is-loose")).to_have_count(0)
-        expect(page.locator(".problem-count")).not_to_contain_text("error")
+        expect(page.locator("[data-outcome][data-loose]")).to_have_count(0)
+        expect(page.locator("[data-problem-count]")).not_to_contain_text("error")
         page.get_by_role("button", name="Run", exact=True).click()
         expect(page.get_by_role("button", name="Start", exact=True)).to_be_visible()
         require_two_steps(shop)
@@ -74,7 +74,7 @@ def test_two_states_are_built_from_nothing_by_keyboard_only(browser: Browser, sh
         expect(page.get_by_role("combobox", name="duration_s")).to_be_focused()
         keys.type("0.05")
         keys.press("Enter")
-        expect(page.locator(".edit-field.has-problem")).to_have_count(0)
+        expect(page.locator("[data-field][data-problem]")).to_have_count(0)
         card(page, "root/wait").focus()
         keys.press("a")
         keys.type("flow.log")
@@ -93,7 +93,7 @@ def test_two_states_are_built_from_nothing_by_keyboard_only(browser: Browser, sh
         expect(page.locator(".choice-input")).to_be_focused()
         keys.type("finished")
         keys.press("Enter")
-        expect(page.locator(".transition-row.is-loose")).to_have_count(0)
+        expect(page.locator("[data-outcome][data-loose]")).to_have_count(0)
         idle(page)
         keys.press("ArrowLeft")
         expect(card(page, "root/wait")).to_be_focused()
@@ -109,7 +109,7 @@ def test_the_editor_is_reached_from_the_page_of_a_behavior_at_its_chosen_node(br
     with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=LAPTOP) as page:
         page.locator(".react-flow__node[data-id='root/both/left']").click()
         page.get_by_role("button", name="Edit", exact=True).click()
-        expect(card(page, "root/both/left").locator(".card")).to_contain_class("is-selected")
+        expect(card(page, "root/both/left").locator("[data-card]")).to_have_attribute("data-selected", "true")
 
 
 def test_a_running_draft_is_refused_while_it_has_errors(browser: Browser, shop: Workshop) -> None:
@@ -117,13 +117,13 @@ def test_a_running_draft_is_refused_while_it_has_errors(browser: Browser, shop: 
     with at_editor(browser, shop, SHIFT_ID) as page:
         card(page, "root/set").click()
         page.keyboard.press("Delete")
-        expect(page.locator(".problem-count")).to_contain_text("error")
+        expect(page.locator("[data-problem-count]")).to_contain_text("error")
         before = file_text(shop, SHIFT_ID)
         page.keyboard.press("Control+Enter")
         expect(page.get_by_role("alert")).to_contain_text("Run: there")
         expect(page.get_by_role("list", name="Problems")).to_be_visible()
         page.keyboard.press("Control+z")
-        expect(page.locator(".problem-count")).to_have_text("No problems")
+        expect(page.locator("[data-problem-count]")).to_have_text("No problems")
         save(page)
         assert file_text(shop, SHIFT_ID) == before
 
@@ -154,7 +154,7 @@ def test_a_tree_and_a_concurrency_begin_from_nothing_too(browser: Browser, shop:
             expect(card(page, path)).to_be_focused()
         page.keyboard.press("Escape")
         page.get_by_role("button", name="Add a rule").click()
-        expect(page.locator(".rules-card")).to_contain_text("finishedlog = done and log_2 = done")
+        expect(page.locator("[data-card='rules']")).to_contain_text("finishedlog = done and log_2 = done")
 
 
 def test_a_branching_is_built_by_keyboard_in_its_roles(browser: Browser, shop: Workshop) -> None:
@@ -176,4 +176,4 @@ def test_a_branching_is_built_by_keyboard_in_its_roles(browser: Browser, shop: W
             page.keyboard.type(typed)
             page.keyboard.press("Enter")
             expect(card(page, path)).to_be_focused()
-        expect(card(page, f"{inside}/log_2").locator(".card-role")).to_have_text("else")
+        expect(card(page, f"{inside}/log_2").locator("[data-role]")).to_have_text("else")

@@ -40,7 +40,7 @@ def transitions(behavior: Behavior, name: str) -> dict[str, str]:
 
 def on_edge(page: Page, arrow: str, share: float) -> tuple[float, float]:
     """A point on an arrow, on the screen."""
-    line = page.locator(f".react-flow__edge[data-id='{arrow}'] .transition-line")
+    line = page.locator(f".react-flow__edge[data-id='{arrow}'] [data-line]")
     expect(line).to_have_count(1)
     idle(page)
     at = line.evaluate(
@@ -76,7 +76,7 @@ def test_outcomes_are_led_elsewhere_by_dragging_from_port_to_node_and_outcome(br
 def test_an_arrow_dropped_in_the_open_asks_what_comes_there(browser: Browser, shop: Workshop) -> None:
     """A new state, connected."""
     with at_editor(browser, shop, SHIFT_ID) as page:
-        drag(page, port(page, "root/first", "c"), page.locator(".edit-canvas"), at=(690, 40))
+        drag(page, port(page, "root/first", "c"), page.locator("[data-canvas]"), at=(690, 40))
         expect(page.get_by_role("dialog", name="first: c leads to")).to_be_visible()
         page.keyboard.type("log")
         page.keyboard.press("Enter")
@@ -98,11 +98,11 @@ def test_a_state_is_inserted_on_an_arrow_by_its_plus_and_by_dropping(browser: Br
         idle(page)
         page.keyboard.press("f")
         idle(page)
-        canvas = page.locator(".edit-canvas").bounding_box()
+        canvas = page.locator("[data-canvas]").bounding_box()
         assert canvas is not None
         x, y = on_edge(page, "root|log|done", 0.5)
         page.get_by_role("button", name="Add flow.Wait").drag_to(
-            page.locator(".edit-canvas"), target_position={"x": x - canvas["x"], "y": y - canvas["y"]}
+            page.locator("[data-canvas]"), target_position={"x": x - canvas["x"], "y": y - canvas["y"]}
         )
         expect(card(page, "root/wait")).to_be_visible()
         behavior = saved(page, shop)
@@ -118,7 +118,7 @@ def test_an_arrow_is_deleted_and_its_end_drawn_elsewhere(browser: Browser, shop:
     with at_editor(browser, shop, SHIFT_ID) as page:
         edge(page, "root|set|done")
         page.keyboard.press("Delete")
-        expect(port(page, "root/set", "done").locator("..")).to_contain_class("is-loose")
+        expect(port(page, "root/set", "done").locator("..")).to_have_attribute("data-loose", "true")
         behavior_text = file_text(shop, SHIFT_ID)
         page.keyboard.press("Control+z")
         expect(page.locator(".react-flow__edge[data-id='root|set|done']")).to_have_count(1)
@@ -140,7 +140,7 @@ def test_several_are_chosen_by_a_box_grouped_and_ungrouped(browser: Browser, sho
         page.mouse.down()
         page.mouse.move(second["x"] + second["width"] + 8, first["y"] + first["height"] - 30, steps=8)
         page.mouse.up()
-        expect(page.locator(".card.is-selected")).to_have_count(2)
+        expect(page.locator("[data-card][data-selected]")).to_have_count(2)
         page.keyboard.press("Control+g")
         expect(card(page, "root/group")).to_be_visible()
         grouped = saved(page, shop)
@@ -160,7 +160,7 @@ def test_nodes_are_copied_within_and_into_another_behavior(browser: Browser, sho
     """As text, so that it can go anywhere."""
     with at_editor(browser, shop, SHIFT_ID) as page:
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-        card(page, "root/both").locator(".frame-head").click()
+        card(page, "root/both").locator("[data-head]").click()
         page.keyboard.press("Control+c")
         expect(page.get_by_text("Copied both")).to_be_visible()
         assert "concurrency:" in page.evaluate("() => navigator.clipboard.readText()")
@@ -183,7 +183,7 @@ def test_a_node_that_is_dragged_stays_where_it_was_put(browser: Browser, shop: W
         meaning = load_behavior(shop.project / SHIFT_ID).meaning
         start = card(page, "root/rest").bounding_box()
         assert start is not None
-        drag(page, card(page, "root/rest").locator(".card-head"), page.locator(".edit-canvas"), at=(560, 120))
+        drag(page, card(page, "root/rest").locator("[data-head]"), page.locator("[data-canvas]"), at=(560, 120))
         idle(page)
         behavior = saved(page, shop)
         assert set(behavior.document.view) == {f"root/{name}" for name in ("first", "set", "both", "rest")}
@@ -202,7 +202,7 @@ def test_a_node_that_is_dragged_stays_where_it_was_put(browser: Browser, shop: W
 def test_a_node_dragged_into_a_container_belongs_to_it(browser: Browser, shop: Workshop) -> None:
     """And the keyboard moves the children of a container in their order."""
     with at_editor(browser, shop, SHIFT_ID) as page:
-        drag(page, card(page, "root/set").locator(".card-head"), card(page, "root/both").locator(".frame-head"))
+        drag(page, card(page, "root/set").locator("[data-head]"), card(page, "root/both").locator("[data-head]"))
         expect(card(page, "root/both/set")).to_be_visible()
         expect(card(page, "root/set")).to_have_count(0)
         idle(page)
@@ -242,7 +242,7 @@ def test_one_goes_into_containers_and_out_again_by_mouse_and_keyboard(browser: B
     """Enter, Escape, arrows, the breadcrumb, and open or close in place."""
     with at_editor(browser, shop, SHIFT_ID) as page:
         crumb = page.get_by_label("Shown container")
-        card(page, "root/both").locator(".frame-head").click()
+        card(page, "root/both").locator("[data-head]").click()
         page.keyboard.press("o")
         expect(card(page, "root/both/left")).to_have_count(0)
         expect(card(page, "root/both")).to_have_accessible_name(
@@ -260,20 +260,20 @@ def test_one_goes_into_containers_and_out_again_by_mouse_and_keyboard(browser: B
         card(page, "root/both").dblclick()
         expect(crumb).to_have_text("shiftboth")
         crumb.get_by_role("button", name="shift").click()
-        expect(card(page, "root/both").locator(".card")).to_contain_class("is-selected")
+        expect(card(page, "root/both").locator("[data-card]")).to_have_attribute("data-selected", "true")
 
 
 def test_a_rule_preempts_some_branches_while_the_others_go_on(browser: Browser, shop: Workshop) -> None:
     """Then it has no outcome; the table and the canvas name whom it preempts."""
     with at_editor(browser, shop, SHIFT_ID) as page:
-        card(page, "root/both").locator(".frame-head").click()
-        some = page.locator(".rule-preempts").nth(1)
+        card(page, "root/both").locator("[data-head]").click()
+        some = page.get_by_role("region", name="Rules").locator("details").nth(1)
         expect(some.locator("summary")).to_have_text("all")
         some.locator("summary").click()
         some.get_by_label("right", exact=True).click()
         expect(some.locator("summary")).to_have_text("right")
         expect(page.get_by_label("Outcome of rule 2")).to_have_count(0)
-        expect(card(page, "root/both").locator(".rules")).to_contain_text("preempt right")
+        expect(card(page, "root/both").locator("[data-rules]")).to_contain_text("preempt right")
         idle(page)
         save(page)
         node = load_behavior(shop.project / SHIFT_ID).root.children["both"]
@@ -323,7 +323,7 @@ def test_every_command_is_in_the_palette_and_every_node_can_be_gone_to(browser: 
         page.keyboard.press("Control+k")
         page.keyboard.type("right")
         page.keyboard.press("Enter")
-        expect(card(page, "root/both/right").locator(".card")).to_contain_class("is-selected")
+        expect(card(page, "root/both/right").locator("[data-card]")).to_have_attribute("data-selected", "true")
         page.keyboard.press("Control+k")
         page.keyboard.type("duplicate")
         page.keyboard.press("Enter")
@@ -339,7 +339,7 @@ PLACES = """() => JSON.stringify(
     }))"""
 # Where the nodes are when the canvas says for the first time that it is busy no more.
 WATCH = f"""() => {{
-    const canvas = document.querySelector('.edit-canvas')
+    const canvas = document.querySelector('[data-canvas]')
     window.wasBusy = false
     new MutationObserver(() => {{
         if (canvas.ariaBusy === 'true') window.wasBusy = true
@@ -354,7 +354,7 @@ def test_the_canvas_is_busy_until_all_that_is_on_it_rests(
 ) -> None:
     """While all of it is brought into view, after an edit, and on the way into a container."""
     with at_editor(browser, shop, SHIFT_ID) as page:
-        card(page, "root/both").locator(".frame-head").click()
+        card(page, "root/both").locator("[data-head]").click()
         for key in keys[:-1]:
             page.keyboard.press(key)
             idle(page)

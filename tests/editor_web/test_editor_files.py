@@ -53,7 +53,7 @@ def test_two_versions_are_compared_in_words_on_both_drawings_and_in_the_text(
         expect(newer).to_contain_text("sleep")
         require_accessible(page, f"versions, {scheme}", part="dialog[open]")
         dialog.get_by_role("tab", name="Text").click()
-        expect(dialog.locator(".diff-line.is-changed").first).to_be_visible()
+        expect(dialog.locator("[data-changed]").first).to_be_visible()
         dialog.get_by_role("tab", name="This version").click()
         expect(dialog.get_by_label(re.compile("Drawing of the version"))).to_contain_text("sleep")
 
@@ -95,7 +95,7 @@ def test_a_behavior_is_renamed_and_those_that_refer_to_it_follow(browser: Browse
         name.fill("snooze")
         dialog.get_by_label("Folder, if any").fill("rests")
         dialog.get_by_role("button", name="Rename").click()
-        expect(page.locator(".edit-head")).to_contain_text("behaviors/rests/snooze.yaml")
+        expect(page.locator("[data-editor-head]")).to_contain_text("behaviors/rests/snooze.yaml")
         expect(card(page, "root/only")).to_be_visible()
     assert file_text(shop, "behaviors/rests/snooze.yaml") == NAP
     assert file_text(shop, OUTER_ID) == OUTER.replace("nap.yaml", "rests/snooze.yaml")
@@ -108,7 +108,7 @@ def test_a_copy_is_made_of_what_is_shown_also_where_it_was_not_saved(browser: Br
         choose_in_menu(page, "Duplicate…")
         expect(page.get_by_role("dialog")).to_contain_text("behaviors/nap_copy.yaml")
         page.keyboard.press("Enter")
-        expect(page.locator(".edit-head")).to_contain_text("behaviors/nap_copy.yaml")
+        expect(page.locator("[data-editor-head]")).to_contain_text("behaviors/nap_copy.yaml")
         expect(card(page, "root/alone")).to_be_visible()
     assert file_text(shop, "behaviors/nap_copy.yaml") == file_text(shop, NAP_ID) == NAP.replace("only", "alone")
 
@@ -120,12 +120,12 @@ def test_a_deleted_behavior_tells_who_needs_it_and_comes_back(browser: Browser, 
         dialog = page.get_by_role("dialog", name="Delete")
         expect(dialog).to_contain_text(OUTER_ID)
         dialog.get_by_role("button", name="Delete nap").click()
-        expect(page.locator(".edit-head")).to_have_count(0)
+        expect(page.locator("[data-editor-head]")).to_have_count(0)
         assert not (shop.project / NAP_ID).exists()
         page.get_by_role("button", name="New").click()
         page.get_by_text("Deleted behaviors").click()
         page.get_by_role("button", name="Restore").click()
-        expect(page.locator(".edit-head")).to_contain_text(NAP_ID)
+        expect(page.locator("[data-editor-head]")).to_contain_text(NAP_ID)
         expect(card(page, "root/only")).to_be_visible()
     assert file_text(shop, NAP_ID) == NAP
 

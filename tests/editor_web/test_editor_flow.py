@@ -59,11 +59,11 @@ def test_it_is_seen_who_writes_a_key_who_reads_it_and_on_which_way_it_is_undefin
         page.get_by_role("button", name=re.compile("^Data flow: writers")).click()
         panel = page.get_by_label("Data flow", exact=True).first
         expect(panel.get_by_role("button", name=re.compile("limit"))).to_contain_text("number, s")
-        arrows = page.locator(".flow-link")
+        arrows = page.locator("[data-link]")
         expect(arrows).to_have_count(2)
         panel.get_by_role("button", name=re.compile("count")).click()
         expect(arrows).to_have_count(1)
-        expect(page.locator(".flow-link.is-unsure")).to_have_count(1)
+        expect(page.locator("[data-link][data-unsure]")).to_have_count(1)
         expect(panel).to_contain_text("undefined on the path choose → show")
         require_accessible(page, f"data flow, {scheme}")
         panel.get_by_role("button", name=re.compile("^set output")).click()
@@ -77,11 +77,11 @@ def test_the_form_of_a_node_tells_who_reads_what_it_writes(browser: Browser, sho
     with at_editor(browser, shop, FLOW_ID) as page:
         card(page, "root/set").click()
         page.get_by_role("button", name=re.compile("^Reads and writes")).click()
-        section = page.locator(".node-flows")
+        section = page.get_by_role("region", name="Reads and writes")
         expect(section).to_contain_text("reads limit")
         expect(section).to_contain_text("from the behavior")
         section.get_by_role("button", name=re.compile("read by show")).click()
-        expect(page.locator(".node-form .form-head")).to_contain_text("show")
+        expect(page.locator("[data-form] header")).to_contain_text("show")
 
 
 def test_a_problem_is_mended_by_one_of_the_fixes_that_are_offered(browser: Browser, shop: Workshop) -> None:
@@ -89,7 +89,7 @@ def test_a_problem_is_mended_by_one_of_the_fixes_that_are_offered(browser: Brows
     broken = SHIFT.replace("b: bad, c: bad}", "b: bad}").replace("duration_s: 3000", "duration: 3000")
     (shop.project / SHIFT_ID).write_text(broken, encoding="utf-8")
     with at_editor(browser, shop, SHIFT_ID) as page:
-        page.locator(".problem-count").click()
+        page.locator("[data-problem-count]").click()
         problems = page.get_by_label("Problems", exact=True)
         loose = problems.get_by_role("button", name=re.compile("outcome"))
         loose.click()
@@ -103,7 +103,7 @@ def test_a_problem_is_mended_by_one_of_the_fixes_that_are_offered(browser: Brows
         card(page, "root/rest").click()
         page.get_by_label("Problems of this node").get_by_role("button", name=re.compile("has no parameter")).click()
         problems.get_by_role("button", name="Rename it to duration_s").click()
-        expect(page.locator(".problem-count")).to_contain_text("No problems")
+        expect(page.locator("[data-problem-count]")).to_contain_text("No problems")
         save(page)
     mended = file_text(shop, SHIFT_ID)
     assert mended == SHIFT
@@ -117,7 +117,7 @@ def test_a_fix_is_offered_at_the_line_of_the_text(browser: Browser, shop: Worksh
         page.locator(".cm-tooltip").get_by_role("button", name="Run flow.SetValue").click()
         idle(page)
         expect(card(page, "root/set")).to_contain_text("flow.SetValue")
-        expect(page.locator(".problem-count")).to_contain_text("No problems")
+        expect(page.locator("[data-problem-count]")).to_contain_text("No problems")
 
 
 def test_a_behavior_that_is_referred_to_is_seen_in_place_and_opened_at_a_node(browser: Browser, shop: Workshop) -> None:
@@ -130,20 +130,20 @@ def test_a_behavior_that_is_referred_to_is_seen_in_place_and_opened_at_a_node(br
         expect(inner).to_be_visible()
         expect(card(page, "root/nap")).to_contain_text("read only")
         # An edit beside it leaves it open.
-        card(page, "root/nap").locator(".frame-head").click()
+        card(page, "root/nap").locator("[data-head]").click()
         page.keyboard.press("Control+d")
         idle(page)
         expect(card(page, "root/nap_2")).to_be_visible()
         expect(inner).to_be_visible()
         inner.click()
         page.keyboard.press("Delete")
-        expect(page.locator(".edit-note")).to_contain_text("part of another behavior")
+        expect(page.locator("[data-notice]")).to_contain_text("part of another behavior")
         page.get_by_role("button", name="Open nap.yaml at this node").click()
-        expect(page.locator(".edit-head")).to_contain_text(NAP_ID)
-        expect(page.locator(".node-form .form-head")).to_contain_text("only")
+        expect(page.locator("[data-editor-head]")).to_contain_text(NAP_ID)
+        expect(page.locator("[data-form] header")).to_contain_text("only")
         page.get_by_title("Back to behaviors/outer.yaml").click()
-        expect(page.locator(".edit-head")).to_contain_text(OUTER_ID)
-        expect(page.locator(".node-form .form-head")).to_contain_text("nap")
+        expect(page.locator("[data-editor-head]")).to_contain_text(OUTER_ID)
+        expect(page.locator("[data-form] header")).to_contain_text("nap")
         card(page, "root/nap").click()
         page.keyboard.press("o")
         expect(inner).to_be_visible()
@@ -238,7 +238,7 @@ def test_an_entry_that_is_chosen_tells_what_is_in_it_and_who_changed_it_last(
         with at_editor(browser, shop, SHIFT_ID) as page:
             card(page, "root/set").click()
             page.get_by_text("About home").click()
-            details = page.locator(".entry-details")
+            details = page.locator("[data-entry]")
             expect(details).to_contain_text("revision 3")
             expect(details).to_contain_text("by Ada")
             expect(details).to_contain_text("upright")
@@ -255,7 +255,7 @@ def test_a_note_is_written_on_the_canvas_and_stays_in_the_file(browser: Browser,
         idle(page)
         note = page.get_by_role("button", name="Note on set: Ask Ada first")
         expect(note).to_be_visible()
-        require_accessible(page, "a note", part=".edit-canvas")
+        require_accessible(page, "a note", part="[data-canvas]")
         page.get_by_role("button", name="Notes on the canvas").click()
         expect(note).to_have_count(0)
         page.get_by_role("button", name="Notes on the canvas").click()
@@ -283,7 +283,7 @@ def test_two_fingers_zoom_the_canvas_and_a_long_press_asks_what_to_add(browser: 
     )
     page = context.new_page()
     page.goto(f"{shop.running.url}edit/{SHIFT_ID}")
-    expect(page.locator(".react-flow.is-in-place")).to_be_visible()
+    expect(page.locator(".react-flow[data-in-place]")).to_be_visible()
     idle(page)
     fingers: Any = context.new_cdp_session(page)
 
@@ -291,7 +291,7 @@ def test_two_fingers_zoom_the_canvas_and_a_long_press_asks_what_to_add(browser: 
         touches = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
         fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
 
-    canvas = page.locator(".edit-canvas").bounding_box()
+    canvas = page.locator("[data-canvas]").bounding_box()
     assert canvas is not None
     x, y = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] - 40
     viewport = page.locator(".react-flow__viewport")

@@ -27,7 +27,7 @@ def test_the_first_change_is_taken_back_before_the_server_has_answered(browser: 
         expect(page.get_by_role("button", name="Redo")).to_be_enabled()
         idle(page)
         expect(nodes).to_have_count(before)
-        expect(page.locator(".dirty-mark")).to_have_count(0)
+        expect(page.locator("[data-unsaved]")).to_have_count(0)
 
 
 def test_a_node_whose_move_does_not_reach_the_server_goes_back_to_its_place(browser: Browser, shop: Workshop) -> None:
@@ -41,7 +41,7 @@ def test_a_node_whose_move_does_not_reach_the_server_goes_back_to_its_place(brow
         page.mouse.down()
         page.mouse.move(there["x"] + 160, there["y"] + 72, steps=6)
         page.mouse.up()
-        expect(page.locator(".edit-note.is-refused")).to_contain_text("Move")
+        expect(page.locator("[data-notice='refused']")).to_contain_text("Move")
         expect(card(page, "root/set")).to_have_css("transform", before)
 
 

@@ -38,7 +38,7 @@ def corner(part: Locator) -> tuple[float, float]:
 
 def line(page: Page, arrow: str) -> Locator:
     """An arrow."""
-    return page.locator(f".react-flow__edge[data-id='{arrow}'] .transition-line")
+    return page.locator(f".react-flow__edge[data-id='{arrow}'] [data-line]")
 
 
 def test_what_is_in_a_dragged_container_comes_along_and_its_arrows_keep_their_course(
@@ -50,7 +50,7 @@ def test_what_is_in_a_dragged_container_comes_along_and_its_arrows_keep_their_co
         into = line(page, "root|first|done")
         before = [corner(part) for part in inside]
         courses = [arrow.get_attribute("d") for arrow in (inside[1], into)]
-        x, y = corner(card(page, "root/around").locator(".frame-head"))
+        x, y = corner(card(page, "root/around").locator("[data-head]"))
         page.mouse.move(x + 40, y + 12)
         page.mouse.down()
         page.mouse.move(x + 40 + BY[0], y + 12 + BY[1], steps=6)

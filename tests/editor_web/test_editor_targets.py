@@ -31,26 +31,26 @@ def test_a_target_out_of_reach_is_a_problem_and_marks_its_node(browser: Browser,
     """It comes after the edit is drawn, follows the text, counts as one says, and is not looked for when off."""
     written(shop.project, FAR)
     with at_editor(browser, shop, ID) as page:
-        count = page.locator(".problem-count")
+        count = page.locator("[data-problem-count]")
         expect(count).to_have_text("1 warning", timeout=GUARD_MS)
-        expect(card(page, "root/go").locator(".mark.is-warning")).to_be_visible()
+        expect(card(page, "root/go").locator("[data-severity='warning']")).to_be_visible()
         count.click()
         problems = page.get_by_role("list", name="Problems")
         expect(problems).to_contain_text("line 12")
         problems.get_by_role("button").click()
         expect(problems).to_contain_text("root/go · unreachable-target")
-        require_accessible(page, "problems with targets", part=".inspector")
+        require_accessible(page, "problems with targets", part="[data-inspector]")
         if SHOTS:
             page.screenshot(path=str(Path(SHOTS) / "targets.png"))
         choice = page.get_by_label("Targets out of reach or in collision")
         choice.select_option("are errors")
         expect(count).to_have_text("1 error", timeout=GUARD_MS)
-        expect(card(page, "root/go").locator(".mark.is-error")).to_be_visible()
+        expect(card(page, "root/go").locator("[data-severity='error']")).to_be_visible()
         choice.select_option("are not looked for")
         expect(count).to_have_text("No problems")
         page.reload()
         idle(page)
-        page.locator(".problem-count").click()
+        page.locator("[data-problem-count]").click()
         expect(page.get_by_label("Targets out of reach or in collision")).to_have_value("off")
 
 
@@ -61,16 +61,16 @@ def test_targets_follow_the_text(browser: Browser, shop: Workshop) -> None:
     with at_editor(browser, shop, ID) as page:
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         page.on("request", lambda request: asked.append(request) if request.url.endswith("/targets") else None)
-        expect(page.locator(".problem-count")).to_have_text("No problems")
+        expect(page.locator("[data-problem-count]")).to_have_text("No problems")
         page.keyboard.press("y")
         for text in (FAR, IN_POST):
             target(page, text)
-        expect(page.locator(".problem-count")).to_have_text("1 warning", timeout=GUARD_MS)
-        page.locator(".problem-count").click()
+        expect(page.locator("[data-problem-count]")).to_have_text("1 warning", timeout=GUARD_MS)
+        page.locator("[data-problem-count]").click()
         page.get_by_role("list", name="Problems").get_by_role("button").click()
         expect(page.get_by_role("list", name="Problems")).to_contain_text("target-in-collision")
         target(page, REACH)
-        expect(page.locator(".problem-count")).to_have_text("No problems", timeout=GUARD_MS)
+        expect(page.locator("[data-problem-count]")).to_have_text("No problems", timeout=GUARD_MS)
         assert file_text(shop, ID) == REACH
         assert asked
 

@@ -187,7 +187,7 @@ def test_what_the_opened_list_points_at_is_shown_before_it_is_taken(browser: Bro
             preview_of(page, name)
         target.press("Escape")
         preview_of(page, "aside")
-        expect(page.locator(".dirty-mark")).to_have_count(0)
+        expect(page.locator("[data-unsaved]")).to_have_count(0)
         shown.get_by_role("button", name="Close the preview").focus()
         page.keyboard.press("Escape")
         expect(page.get_by_label("Preview of aside")).to_have_count(0)

@@ -48,8 +48,8 @@ def choose(page: Page, path: str) -> None:
     """By its heading, where nothing lies upon it, once all of it is in sight."""
     page.get_by_role("button", name="Show all (F)").click()
     idle(page)
-    card(page, path).locator(".card-name").first.click()
-    expect(card(page, path).locator(".card").first).to_contain_class("is-selected")
+    card(page, path).locator("[data-name]").first.click()
+    expect(card(page, path).locator("[data-card]").first).to_have_attribute("data-selected", "true")
 
 
 def add(page: Page, what: str, made: str, name: str) -> None:
@@ -61,7 +61,9 @@ def add(page: Page, what: str, made: str, name: str) -> None:
     page.keyboard.press("F2")
     page.keyboard.type(name)
     page.keyboard.press("Enter")
-    expect(card(page, f"{made.rpartition('/')[0]}/{name}").locator(".card").first).to_contain_class("is-selected")
+    expect(card(page, f"{made.rpartition('/')[0]}/{name}").locator("[data-card]").first).to_have_attribute(
+        "data-selected", "true"
+    )
     idle(page)
 
 
@@ -187,17 +189,17 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
         page.get_by_role("button", name="Create").click()
         expect(page.get_by_role("tab", name="Behavior")).to_be_visible(timeout=GUARD_MS)
         declare(page)
-        page.locator(".edit-canvas").click(position={"x": 30, "y": 500})
+        page.locator("[data-canvas]").click(position={"x": 30, "y": 500})
         add(page, "Concurrency", "root/concurrency", "transfer")
         build_arm(page, "left", "hca_north")
         build_arm(page, "right", "hca_south")
         rules(page)
-        page.locator(".edit-canvas").click(position={"x": 8, "y": 120})
+        page.locator("[data-canvas]").click(position={"x": 8, "y": 120})
         expect_parts(page)
         choose(page, "root/transfer")
         lead(page, "placed", "expect_north_part")
         lead(page, "failed", "failed")
-        expect(page.locator(".problem-count")).to_have_text("No problems", timeout=GUARD_MS)
+        expect(page.locator("[data-problem-count]")).to_have_text("No problems", timeout=GUARD_MS)
         page.get_by_role("button", name="Run", exact=True).click()
         expect(page.get_by_role("button", name="Start", exact=True)).to_be_visible()
         behavior = load_behavior(project / MADE)

@@ -65,7 +65,7 @@ def test_the_whole_tour_by_mouse(browser: Browser, shop: Workshop) -> None:
         at_step(page, "Add a first state")
         wait = page.get_by_role("button", name="Add flow.Wait")
         require_ring_around(page, wait)
-        wait.drag_to(page.locator(".edit-canvas"), target_position={"x": 200, "y": 300})
+        wait.drag_to(page.locator("[data-canvas]"), target_position={"x": 200, "y": 300})
         at_step(page, "Say how long it waits")
         field = page.get_by_role("combobox", name="duration_s")
         require_ring_around(page, field)
@@ -78,7 +78,7 @@ def test_the_whole_tour_by_mouse(browser: Browser, shop: Workshop) -> None:
         page.get_by_role("combobox", name="message").press("Tab")
         at_step(page, "Lead the outcomes on")
         # Beside what the step is about, the card is not on what is dragged.
-        require_ring_around(page, page.locator(".edit-canvas .transition-row.is-loose"))
+        require_ring_around(page, page.locator("[data-canvas] [data-outcome][data-loose]"))
         drag(page, port(page, "root/log", "done"), pill(page, "root", "finished"))
         at_step(page, "Check, save, and go to the run page")
         page.get_by_role("button", name="Run", exact=True).click()

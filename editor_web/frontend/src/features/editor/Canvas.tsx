@@ -5,6 +5,7 @@ import { Background, BackgroundVariant, ConnectionMode, MiniMap, ReactFlow, Sele
 import { useEffect, useRef, useState } from 'react'
 import { Empty } from '../../components/Empty'
 import type { Size } from '../../document/geometry'
+import classes from './canvas.module.css'
 import {
   isAllowed,
   onConnect,
@@ -54,7 +55,7 @@ export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: bo
   const [drawn, setDrawn] = useState<Arranged>()
   const isBusy = useIsBusy(drawn)
   return (
-    <div className="edit-canvas" ref={ref} aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
+    <div className={classes['canvas']} ref={ref} data-canvas aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
       {arranged && <Drawn arranged={arranged} pane={{ width, height }} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />}
@@ -91,7 +92,10 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   return (
     <ReactFlow<CanvasNode, CanvasEdge>
       ref={element}
-      className={`${isInPlace ? 'is-in-place' : ''}${isConnecting ? ' is-connecting' : ''}${isStale ? ' is-stale' : ''}`}
+      className={classes['flow'] ?? ''}
+      data-in-place={isInPlace || undefined}
+      data-connecting={isConnecting || undefined}
+      data-stale={isStale || undefined}
       nodes={nodes}
       edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
       onlyRenderVisibleElements={hasMany && !isFar}
@@ -137,9 +141,11 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
         <MiniMap
           pannable
           zoomable
-          className="edit-map"
+          style={{ border: '1px solid var(--line)' }}
           ariaLabel="Overview of the canvas"
-          nodeClassName={(node) => `map-${node.type ?? ''}`}
+          nodeColor={({ type }) => (type === 'frame' ? 'none' : 'var(--line-strong)')}
+          nodeStrokeColor={({ type }) => (type === 'frame' ? 'var(--line-strong)' : 'none')}
+          nodeStrokeWidth={6}
         />
       )}
       {isFar && <LowDetailEdges nodes={computed} edges={edges} />}

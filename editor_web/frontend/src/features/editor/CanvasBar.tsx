@@ -1,4 +1,5 @@
 /** Above the canvas: where one is, and how it is seen. */
+import { Group, Space, Text, UnstyledButton } from '@mantine/core'
 import {
   IconArrowLeft,
   IconArrowsMaximize,
@@ -12,7 +13,7 @@ import {
   IconSquarePlus,
 } from '@tabler/icons-react'
 import { useReactFlow } from '@xyflow/react'
-import { useMemo, type ReactNode } from 'react'
+import { useMemo } from 'react'
 import { nodeOf } from '../../document/editing/model'
 import { pathsTo } from '../../document/path'
 import { focusNode } from './actions'
@@ -24,7 +25,9 @@ import { referrerOf } from './references'
 import { toggleDataFlow, useDataFlow } from './dataFlow'
 import { layOutAnew } from './placing'
 import { wholeCanvas } from './viewport'
+import classes from './frame.module.css'
 import { draftOf, rootOf, scopeOf, setEditor, useEditor } from './store'
+import { Tool } from './Tool'
 
 export interface CanvasBarProps {
   readonly hasMap: boolean
@@ -39,14 +42,14 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
   const hasNotes = useNotes((s) => s.isShown)
   const hasFlow = useDataFlow((s) => s.isShown)
   return (
-    <div className="canvas-bar">
+    <Group wrap="nowrap" gap={2} mih={38} pl="sm" pr="xs" className={classes['bar']}>
       <Path />
       {isStale && (
-        <span className="stale-note" role="status">
+        <Text span size="xs" ml="sm" c="var(--failed)" truncate role="status">
           The text cannot be read; this is how it was before.
-        </span>
+        </Text>
       )}
-      <span className="spacer" />
+      <Space flex={1} />
       <Tool label="Add a state or container (A)" onPress={() => openAddPalette()}>
         <IconSquarePlus size={17} />
       </Tool>
@@ -74,7 +77,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       <Tool label="Show all (F)" onPress={() => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 }))}>
         <IconArrowsMaximize size={17} />
       </Tool>
-    </div>
+    </Group>
   )
 }
 
@@ -86,19 +89,18 @@ function Path() {
   const id = useEditor((s) => s.id)
   const from = useMemo(() => referrerOf(id), [id])
   return (
-    <nav aria-label="Shown container" className="breadcrumb edit-breadcrumb">
-      <ol>
+    <nav aria-label="Shown container">
+      <ol className={classes['path']}>
         {from && (
           <li>
-            <button type="button" onClick={() => openOther(from.id, from.node)} title={`Back to ${from.id}`}>
+            <UnstyledButton onClick={() => openOther(from.id, from.node)} title={`Back to ${from.id}`}>
               <IconArrowLeft size={13} aria-hidden /> {from.name}
-            </button>
+            </UnstyledButton>
           </li>
         )}
         {pathsTo(scope).map((path) => (
           <li key={path}>
-            <button
-              type="button"
+            <UnstyledButton
               aria-current={path === scope ? 'location' : undefined}
               onClick={() => {
                 const inside = pathsTo(scope)[pathsTo(path).length]
@@ -107,32 +109,10 @@ function Path() {
               }}
             >
               {path === 'root' ? name || 'root' : (nodeOf(root, path)?.name ?? path)}
-            </button>
+            </UnstyledButton>
           </li>
         ))}
       </ol>
     </nav>
-  )
-}
-
-interface ToolProps {
-  readonly label: string
-  readonly onPress: () => void
-  readonly isPressed?: boolean
-  readonly children: ReactNode
-}
-
-function Tool({ label, onPress, isPressed, children }: ToolProps) {
-  return (
-    <button
-      type="button"
-      className="bar-button"
-      aria-label={label}
-      title={label}
-      {...(isPressed === undefined ? {} : { 'aria-pressed': isPressed })}
-      onClick={onPress}
-    >
-      {children}
-    </button>
   )
 }

@@ -1,4 +1,5 @@
 /** The nodes of the editor's canvas: states, containers open and closed, parts of trees, outcomes, rules. */
+import { VisuallyHidden } from '@mantine/core'
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import {
   IconAlertTriangleFilled,
@@ -15,6 +16,7 @@ import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
+import classes from './cards.module.css'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
 import { NodeIcon } from './NodeIcon'
 import { useMark, useTransitionFindings } from './marks'
@@ -22,15 +24,21 @@ import { useMark, useTransitionFindings } from './marks'
 export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps<CardNode>) {
   const { node } = data
   return (
-    <div className={`card leaf-card kind-${node.kind}${stateClasses(data, selected)}`}>
+    <div className={classes['card']} data-card="leaf" data-kind={node.kind} {...looksOf(data, selected)}>
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
-      <div className="card-head">
-        <NodeIcon className="kind-icon" kind={node.kind} />
-        {node.role && <span className="card-role">{node.role}</span>}
-        <div className="card-titles">
-          <span className="card-name">{node.name}</span>
-          <span className="card-title">{node.disabled === false ? node.title || insideText(data) : disabledText(node.disabled)}</span>
+      <div className={classes['head']} data-head>
+        <NodeIcon className={classes['icon']} kind={node.kind} />
+        {node.role && (
+          <span className={classes['chip']} data-role>
+            {node.role}
+          </span>
+        )}
+        <div className={classes['titles']}>
+          <span className={classes['name']} data-name>
+            {node.name}
+          </span>
+          <span className={classes['title']}>{node.disabled === false ? node.title || insideText(data) : disabledText(node.disabled)}</span>
         </div>
         <Extras data={data} />
         <MarkIcon path={id} inside={node.children.length > 0} />
@@ -47,20 +55,26 @@ function insideText({ node, count }: CardData): string {
 export const FrameCard = memo(function FrameCard({ id, data, selected }: NodeProps<CardNode>) {
   const { node } = data
   return (
-    <div className={`card frame-card kind-${node.kind}${stateClasses(data, selected)}`}>
+    <div className={classes['card']} data-card="frame" data-kind={node.kind} {...looksOf(data, selected)}>
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
-      <div className="frame-head">
-        <NodeIcon className="kind-icon" kind={node.kind} />
-        <span className="card-name">{node.name}</span>
-        <span className="frame-kind">{node.disabled === false ? node.title || kindLabel(node.kind) : disabledText(node.disabled)}</span>
-        {node.kind === 'behavior' && <span className="frame-foreign">read only</span>}
-        <span className="spacer" />
+      <div className={classes['head']} data-head>
+        <NodeIcon className={classes['icon']} kind={node.kind} />
+        <span className={classes['name']} data-name>
+          {node.name}
+        </span>
+        <span className={classes['kind']}>
+          {node.disabled === false ? node.title || kindLabel(node.kind) : disabledText(node.disabled)}
+        </span>
+        {node.kind === 'behavior' && <span className={classes['chip']}>read only</span>}
         <Extras data={data} />
         <MarkIcon path={id} inside={false} />
       </div>
-      {node.children.length === 0 && <div className="frame-empty">Empty: add a state, or drop one here</div>}
-      <span className="spacer" />
+      {node.children.length === 0 && (
+        <div className={classes['kind']} style={{ padding: '8px 16px' }}>
+          Empty: add a state, or drop one here
+        </div>
+      )}
       {node.kind === 'concurrency' && <RuleTable node={node} />}
       <Transitions path={id} data={data} />
     </div>
@@ -70,38 +84,55 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
 export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps<CardNode>) {
   const { node } = data
   return (
-    <div className={`card twig-card kind-${node.kind}${stateClasses(data, selected)}`}>
-      <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
-      <NodeIcon className="kind-icon" kind={node.kind} size={15} />
-      {node.role && <span className="card-role">{node.role}</span>}
-      <span className="card-name">{node.name}</span>
-      {node.disabled !== false && <span className="twig-disabled">disabled</span>}
+    <div className={classes['card']} data-card="twig" data-kind={node.kind} {...looksOf(data, selected)}>
+      <Handle type="target" id="above" position={Position.Top} className={classes['branch']} isConnectable={false} />
+      <NodeIcon className={classes['icon']} kind={node.kind} size={15} />
+      {node.role && (
+        <span className={classes['chip']} data-role>
+          {node.role}
+        </span>
+      )}
+      <span className={classes['name']} data-name>
+        {node.name}
+      </span>
+      {node.disabled !== false && <em className={classes['kind']}>disabled</em>}
       {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
-      {!data.isOpen && data.count > 0 && <span className="twig-count">{data.count}</span>}
+      {!data.isOpen && data.count > 0 && <span className={classes['chip']}>{data.count}</span>}
       <MarkIcon path={id} inside={!data.isOpen} />
-      <Handle type="source" id="below" position={Position.Bottom} className="branch-port" isConnectable={false} />
+      <Handle type="source" id="below" position={Position.Bottom} className={classes['branch']} isConnectable={false} />
     </div>
   )
 })
 
-function stateClasses(data: CardData, selected: boolean): string {
-  return `${selected ? ' is-selected' : ''}${data.isForeign ? ' is-foreign' : ''}${data.isPassedOver ? ' is-disabled' : ''}`
+function looksOf(data: CardData, selected: boolean) {
+  return {
+    'data-selected': selected || undefined,
+    'data-foreign': data.isForeign || undefined,
+    'data-disabled': data.isPassedOver || undefined,
+  }
 }
 
 /** Above in a tree; in a machine at the left, at the height of the first outcome. */
 function Entry({ data }: { data: CardData }) {
   return data.isInTree ? (
-    <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
+    <Handle type="target" id="above" position={Position.Top} className={classes['branch']} isConnectable={false} />
   ) : (
-    <Handle type="target" id={IN} position={Position.Left} className="in-port" style={{ top: data.entryY }} isConnectableStart={false} />
+    <Handle
+      type="target"
+      id={IN}
+      position={Position.Left}
+      className={classes['in']}
+      style={{ top: data.entryY }}
+      isConnectableStart={false}
+    />
   )
 }
 
 function InitialMark() {
   return (
-    <span className="initial-flag" title="The machine begins here">
+    <span className={classes['initial']} title="The machine begins here">
       <IconFlag size={11} aria-hidden />
-      <span className="visually-hidden">begins here</span>
+      <VisuallyHidden>begins here</VisuallyHidden>
     </span>
   )
 }
@@ -110,7 +141,7 @@ function InitialMark() {
 function Extras({ data: { node } }: { data: CardData }) {
   const asks = Object.entries(node.autonomy)
   return (
-    <span className="extras">
+    <span className={classes['sign']}>
       {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
       {node.retry && <IconRefresh size={13} aria-label="retried" />}
       {node.timeout && <IconClock size={13} aria-label="with a timeout" />}
@@ -125,11 +156,11 @@ function MarkIcon({ path, inside }: { path: string; inside: boolean }) {
   if (!mark) return null
   const Icon = mark.severity === 'error' ? IconCircleXFilled : IconAlertTriangleFilled
   return (
-    <span className={`mark is-${mark.severity}`} title={mark.messages.join('\n')}>
+    <span className={classes['sign']} data-severity={mark.severity} title={mark.messages.join('\n')}>
       <Icon size={15} aria-hidden />
-      <span className="visually-hidden">
+      <VisuallyHidden>
         {mark.messages.length} {mark.severity === 'error' ? 'errors' : 'warnings'}
-      </span>
+      </VisuallyHidden>
     </span>
   )
 }
@@ -138,7 +169,7 @@ function MarkIcon({ path, inside }: { path: string; inside: boolean }) {
 function Transitions({ path, data }: { path: string; data: CardData }) {
   if (data.transitions.length === 0) return null
   return (
-    <div className="transition-rows">
+    <div className={classes['rows']}>
       {data.transitions.map((transition) => (
         <TransitionRow
           key={transition.outcome}
@@ -165,17 +196,23 @@ function TransitionRow({
 }) {
   const findings = useTransitionFindings(path, transition.outcome)
   const isLoose = transition.target === undefined
-  const classes = `${isLoose ? ' is-loose' : ''}${isFailure(transition.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`
   return (
-    <div className={`transition-row${classes}`} title={findings.map((finding) => finding.message).join('\n') || undefined}>
-      <span className="transition-outcome">{transition.outcome}</span>
-      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className="transition-target">→ {transition.target}</span>}
-      {!isDrawn && transition.target === transition.outcome && <span className="transition-target">↦</span>}
+    <div
+      className={classes['row']}
+      data-outcome={transition.outcome}
+      data-loose={isLoose || undefined}
+      data-failure={isFailure(transition.outcome) || undefined}
+      data-finding={findings.length > 0 || undefined}
+      title={findings.map((finding) => finding.message).join('\n') || undefined}
+    >
+      <span className={classes['outcome']}>{transition.outcome}</span>
+      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className={classes['target']}>→ {transition.target}</span>}
+      {!isDrawn && transition.target === transition.outcome && <span className={classes['target']}>↦</span>}
       <Handle
         type="source"
         id={transition.outcome}
         position={Position.Right}
-        className="out-port"
+        className={classes['out']}
         isConnectable={!isForeign && transition.isOutcome}
         isConnectableEnd={false}
       />
@@ -185,17 +222,17 @@ function TransitionRow({
 
 export const PillCard = memo(function PillCard({ data }: NodeProps<PillNode>) {
   return (
-    <div className={`pill${data.count === 0 ? ' is-loose' : ''}${isFailure(data.outcome) ? ' is-failure' : ''}`}>
-      <Handle type="target" id={IN} position={Position.Left} className="in-port" isConnectableStart={false} />
+    <div className={classes['pill']} data-loose={data.count === 0 || undefined} data-failure={isFailure(data.outcome) || undefined}>
+      <Handle type="target" id={IN} position={Position.Left} className={classes['in']} isConnectableStart={false} />
       <span>{data.outcome}</span>
-      {data.count !== 1 && <span className="pill-count">{data.count === 0 ? 'unused' : `×${data.count}`}</span>}
+      {data.count !== 1 && <span className={classes['kind']}>{data.count === 0 ? 'unused' : `×${data.count}`}</span>}
     </div>
   )
 })
 
 export const RulesCard = memo(function RulesCard({ data }: NodeProps<RulesNode>) {
   return (
-    <div className="rules-card">
+    <div style={{ height: '100%' }} data-card="rules">
       <RuleTable node={data.node} />
     </div>
   )
@@ -204,17 +241,19 @@ export const RulesCard = memo(function RulesCard({ data }: NodeProps<RulesNode>)
 /** When a concurrency container ends: the first rule that holds counts. */
 function RuleTable({ node }: { node: CardData['node'] }) {
   return (
-    <div className="rules">
-      <div className="rules-head">Ends with</div>
-      {node.rules.length === 0 && <div className="rule is-missing">no rule yet</div>}
+    <div className={classes['rules']} data-rules>
+      <span className={classes['target']}>Ends with</span>
+      {node.rules.length === 0 && <div data-failure>no rule yet</div>}
       {node.rules.map((rule, index) => (
-        <div key={index} className="rule">
-          <span className={`rule-outcome${isFailure(rule.outcome) ? ' is-failure' : ''}`}>{consequenceOf(rule)}</span>
-          <span className="rule-when">
-            {rule.at_least !== null && <em>{rule.at_least} of </em>}
+        <div key={index}>
+          <span className={classes['outcome']} data-failure={isFailure(rule.outcome) || undefined}>
+            {consequenceOf(rule)}
+          </span>
+          <span className={classes['target']}>
+            {rule.at_least !== null && `${rule.at_least} of `}
             {Object.entries(rule.when).map(([child, outcome], position) => (
               <span key={child}>
-                {position > 0 && <em>{rule.at_least === null ? ' and ' : ', '}</em>}
+                {position > 0 && (rule.at_least === null ? ' and ' : ', ')}
                 {child} = {outcome}
               </span>
             ))}
@@ -222,9 +261,11 @@ function RuleTable({ node }: { node: CardData['node'] }) {
         </div>
       ))}
       {node.otherwise && (
-        <div className="rule">
-          <span className={`rule-outcome${isFailure(node.otherwise) ? ' is-failure' : ''}`}>{node.otherwise}</span>
-          <span className="rule-when">otherwise</span>
+        <div>
+          <span className={classes['outcome']} data-failure={isFailure(node.otherwise) || undefined}>
+            {node.otherwise}
+          </span>
+          <span className={classes['target']}>otherwise</span>
         </div>
       )}
     </div>

@@ -1,9 +1,11 @@
 /** The file and the draft have both changed: what each has, side by side, and which text to go on with. */
+import { Button, Group, SimpleGrid, Stack, Text } from '@mantine/core'
 import { useState } from 'react'
 import { Dialog } from '../../components/Dialog'
 import { LineDiff } from './LineDiff'
 import { resolve, type Side } from './session'
 import { draftOf, setEditor, useEditor } from './store'
+import classes from './versions.module.css'
 
 export function ConflictDialog() {
   const conflict = useEditor((s) => s.conflict)
@@ -15,51 +17,51 @@ export function ConflictDialog() {
   const close = () => setEditor({ conflict: undefined, isOutdated: true })
   return (
     <Dialog isOpen onClose={close} title="The file has changed on disk">
-      <div className="conflict">
-        <p>
+      <Stack gap="sm" className={classes['wide']}>
+        <Text size="sm">
           {isMergeable
             ? 'Both sides changed different lines; they can be merged.'
             : 'Both sides changed the same lines. Nothing was written; choose which text to go on with.'}
-        </p>
-        <div className="conflict-heads">
+        </Text>
+        <SimpleGrid cols={2} fz="sm">
           <strong>Yours</strong>
-          <div role="radiogroup" aria-label="Compare with" className="conflict-choice">
+          <div role="radiogroup" aria-label="Compare with">
             <Against label="On disk" side="theirs" now={against} onChoose={setAgainst} />
             {isMergeable && <Against label="Merged" side="merged" now={against} onChoose={setAgainst} />}
           </div>
-        </div>
+        </SimpleGrid>
         <LineDiff label="Differences, yours on the left" left={mine} right={right} />
-        <div className="command-row">
+        <Group gap={6}>
           {isMergeable && (
-            <button type="button" className="command is-strong" onClick={() => void resolve('merged')}>
+            <Button size="compact-sm" onClick={() => void resolve('merged')}>
               Save the merged text
-            </button>
+            </Button>
           )}
-          <button type="button" className="command" onClick={() => void resolve('theirs')}>
+          <Button size="compact-sm" variant="default" onClick={() => void resolve('theirs')}>
             Take the one on disk
-          </button>
-          <button type="button" className="command is-danger" onClick={() => void resolve('mine')}>
+          </Button>
+          <Button size="compact-sm" variant="default" c="var(--failed)" bd="1px solid var(--failed)" onClick={() => void resolve('mine')}>
             Overwrite with yours
-          </button>
-          <button type="button" className="command is-quiet" onClick={close}>
+          </Button>
+          <Button size="compact-sm" variant="subtle" color="gray" c="dimmed" onClick={close}>
             Go on editing
-          </button>
-        </div>
-      </div>
+          </Button>
+        </Group>
+      </Stack>
     </Dialog>
   )
 }
 
 function Against({ label, side, now, onChoose }: { label: string; side: Side; now: Side; onChoose: (side: Side) => void }) {
   return (
-    <button
-      type="button"
+    <Button
+      size="compact-sm"
+      variant={side === now ? 'light' : 'subtle'}
       role="radio"
       aria-checked={side === now}
-      className={`command is-quiet${side === now ? ' is-chosen' : ''}`}
       onClick={() => onChoose(side)}
     >
       {label}
-    </button>
+    </Button>
   )
 }

@@ -1,37 +1,50 @@
 /** The userdata keys beside the canvas: of what kind they are, who writes and reads each, and on which way one is not defined. */
-import { CloseButton } from '@mantine/core'
+import { Box, CloseButton, Flex, Text, Title, UnstyledButton } from '@mantine/core'
 import { IconAlertTriangleFilled, IconCircleXFilled, IconPencil, IconEye } from '@tabler/icons-react'
+import type { ReactNode } from 'react'
 import type { KeyFlow, KeyReader, KeyWriter } from '../../api/types'
 import { kindOfKey, soundnessOf } from '../../document/editing/dataFlow'
 import { nameOfPath, pathsTo } from '../../document/path'
 import { goToUse, inputLabel, outputLabel, showKey, toggleDataFlow, useDataFlow, useFreshDataFlow } from './dataFlow'
+import { FormWords } from './FormParts'
+import classes from './frame.module.css'
+import { PlainList } from './PlainList'
+import rows from './row.module.css'
 import { draftOf, rootOf, useEditor } from './store'
 
 export function DataFlowPanel() {
   const { flows, problem, key, of } = useDataFlow()
   useFreshDataFlow(true)
   return (
-    <section className="flow-panel" aria-label="Data flow">
-      <header>
-        <h2>Data flow</h2>
+    <section className={classes['side']} aria-label="Data flow">
+      <Flex component="header" align="center" justify="space-between" pl="sm" pr="xs" className={classes['bar']} mih={38}>
+        <Title order={2} fz="sm" fw={620}>
+          Data flow
+        </Title>
         <CloseButton size="sm" aria-label="Close the data flow" onClick={toggleDataFlow} />
-      </header>
+      </Flex>
       {problem && (
-        <p className="flow-problem" role="status">
+        <Text size="xs" px="sm" py="xs" bg="var(--failed-soft)" role="status">
           {problem}
-        </p>
+        </Text>
       )}
-      {!problem && of === undefined && <p className="quiet">Looking at the behavior …</p>}
+      {!problem && of === undefined && (
+        <Box px="sm" py="xs">
+          <FormWords>Looking at the behavior …</FormWords>
+        </Box>
+      )}
       {!problem && of !== undefined && flows.length === 0 && (
-        <p className="quiet">
-          No userdata yet. Give a state an output, or declare a key in the tab Behavior; what writes and reads it is shown here.
-        </p>
+        <Box px="sm" py="xs">
+          <FormWords>
+            No userdata yet. Give a state an output, or declare a key in the tab Behavior; what writes and reads it is shown here.
+          </FormWords>
+        </Box>
       )}
-      <div className="flow-keys">
+      <Box p={4} style={{ overflowY: 'auto' }}>
         {flows.map((flow) => (
           <KeyItem key={flow.key} flow={flow} isChosen={key === flow.key} />
         ))}
-      </div>
+      </Box>
     </section>
   )
 }
@@ -40,52 +53,85 @@ function KeyItem({ flow, isChosen }: { flow: KeyFlow; isChosen: boolean }) {
   const kind = useEditor((s) => kindOfKey(flow, rootOf(s), draftOf(s).document, s.catalogue))
   const soundness = soundnessOf(flow)
   return (
-    <div className={`flow-key${isChosen ? ' is-chosen' : ''}`}>
-      <button type="button" aria-expanded={isChosen} onClick={() => showKey(flow.key)}>
-        <span className="mono flow-name">{flow.key}</span>
-        {kind && <span className="quiet">{kind}</span>}
-        <span className="spacer" />
-        {soundness === 'never' && <IconCircleXFilled size={14} className="is-never" aria-label="not defined somewhere" />}
-        {soundness === 'maybe' && <IconAlertTriangleFilled size={14} className="is-maybe" aria-label="may be undefined somewhere" />}
-        <span className="quiet flow-counts">
+    <div>
+      <UnstyledButton className={rows['row']} aria-expanded={isChosen} onClick={() => showKey(flow.key)}>
+        <Text span size="xs" ff="monospace" fw={620} miw="4rem">
+          {flow.key}
+        </Text>
+        <Text span size="xs" c="dimmed" className={rows['line']}>
+          {kind}
+        </Text>
+        {soundness === 'never' && <IconCircleXFilled size={14} color="var(--failed)" aria-label="not defined somewhere" />}
+        {soundness === 'maybe' && <IconAlertTriangleFilled size={14} color="var(--stopped)" aria-label="may be undefined somewhere" />}
+        <Flex component="span" align="center" gap={4} fz="xs" c="dimmed" flex="none">
           <IconPencil size={12} aria-label="written by" /> {flow.writers.length}
           <IconEye size={13} aria-label="read by" /> {flow.readers.length}
-        </span>
-      </button>
+        </Flex>
+      </UnstyledButton>
       {isChosen && <Uses flow={flow} />}
     </div>
   )
 }
 
+function UsesTitle({ children }: { children: ReactNode }) {
+  return (
+    <Title order={3} fz="xs" fw={560} c="dimmed" mt={4}>
+      {children}
+    </Title>
+  )
+}
+
 function Uses({ flow }: { flow: KeyFlow }) {
   return (
-    <div className="flow-uses">
-      <h3>Written by</h3>
-      {flow.writers.length === 0 && <p className="is-never">nobody</p>}
-      <ul className="plain-list">
+    <Box px={8} pb={8}>
+      <UsesTitle>Written by</UsesTitle>
+      {flow.writers.length === 0 && (
+        <Text size="xs" c="var(--failed)">
+          nobody
+        </Text>
+      )}
+      <PlainList>
         {flow.writers.map((writer, index) => (
           <li key={index}>
-            <button type="button" className="flow-use" onClick={() => goToUse(writer.path, outputLabel(writer.name))}>
+            <UnstyledButton
+              className={rows['row']}
+              fz="xs"
+              px={6}
+              py={4}
+              display="block"
+              onClick={() => goToUse(writer.path, outputLabel(writer.name))}
+            >
               <PathWords path={writer.path} />
-              <span className="quiet">{writerWords(writer, flow.key)}</span>
-            </button>
+              <Text inherit c="dimmed">
+                {writerWords(writer, flow.key)}
+              </Text>
+            </UnstyledButton>
           </li>
         ))}
-      </ul>
-      <h3>Read by</h3>
-      {flow.readers.length === 0 && <p className="quiet">nobody</p>}
-      <ul className="plain-list">
+      </PlainList>
+      <UsesTitle>Read by</UsesTitle>
+      {flow.readers.length === 0 && <FormWords>nobody</FormWords>}
+      <PlainList>
         {flow.readers.map((reader, index) => (
           <li key={index}>
-            <button type="button" className="flow-use" onClick={() => goToUse(reader.path, inputLabel(reader.name))}>
+            <UnstyledButton
+              className={rows['row']}
+              fz="xs"
+              px={6}
+              py={4}
+              display="block"
+              onClick={() => goToUse(reader.path, inputLabel(reader.name))}
+            >
               <PathWords path={reader.path} />
-              <span className="quiet">{readerWords(reader, flow.key)}</span>
+              <Text inherit c="dimmed">
+                {readerWords(reader, flow.key)}
+              </Text>
               <Definedness reader={reader} />
-            </button>
+            </UnstyledButton>
           </li>
         ))}
-      </ul>
-    </div>
+      </PlainList>
+    </Box>
   )
 }
 
@@ -96,7 +142,12 @@ export function PathWords({ path }: { path: string }) {
   return (
     <span>
       <strong>{nameOfPath(path)}</strong>
-      {around && <span className="quiet"> in {around}</span>}
+      {around && (
+        <Text span inherit c="dimmed">
+          {' '}
+          in {around}
+        </Text>
+      )}
     </span>
   )
 }
@@ -124,18 +175,26 @@ function readerWords(reader: KeyReader, key: string): string {
 export function Definedness({ reader }: { reader: KeyReader }) {
   switch (reader.defined) {
     case 'always':
-      return <span className="quiet">from {sourceWords(reader)}</span>
+      return <Words c="dimmed">from {sourceWords(reader)}</Words>
     case 'maybe':
       return (
-        <span className="is-maybe">
+        <Words c="var(--stopped)">
           undefined on the path {reader.witness || 'that does not pass a writer'}; else from {sourceWords(reader)}
-        </span>
+        </Words>
       )
     case 'never':
-      return <span className={reader.required ? 'is-never' : 'quiet'}>never defined here</span>
+      return <Words c={reader.required ? 'var(--failed)' : 'dimmed'}>never defined here</Words>
     default:
-      return <span className="quiet">nothing leads here</span>
+      return <Words c="dimmed">nothing leads here</Words>
   }
+}
+
+function Words({ c, children }: { c: string; children: ReactNode }) {
+  return (
+    <Text span inherit c={c}>
+      {children}
+    </Text>
+  )
 }
 
 function sourceWords(reader: KeyReader): string {

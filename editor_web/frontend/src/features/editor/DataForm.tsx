@@ -1,10 +1,12 @@
 /** Where a state reads its inputs from, and under which userdata keys its outputs are written. */
+import { Code } from '@mantine/core'
 import { lookup, without } from '../../document/dict'
 import type { KeyView } from '../../api/types'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { performOn } from './apply'
 import { inputLabel, outputLabel } from './dataFlow'
+import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useNames } from './useNames'
@@ -23,10 +25,17 @@ export function DataForm({ node, inputs, outputs }: { node: EditNode; inputs: re
   return (
     <Section title="Userdata">
       {ins.map((key) => (
-        <div key={`in ${key}`} className="edit-line">
-          <span>
-            <span className="mono">{key}</span> from
-          </span>
+        <FormLine
+          key={`in ${key}`}
+          label={
+            <>
+              <Code bg="none" p={0}>
+                {key}
+              </Code>{' '}
+              from
+            </>
+          }
+        >
           <TemplateInput
             label={inputLabel(key)}
             placeholder={inputs.find((each) => each.name === key)?.required ? key : 'its default'}
@@ -34,13 +43,20 @@ export function DataForm({ node, inputs, outputs }: { node: EditNode; inputs: re
             value={lookup(node.inputs, key) ?? ''}
             onCommit={(typed) => set('in', key, typed)}
           />
-        </div>
+        </FormLine>
       ))}
       {outs.map((key) => (
-        <div key={`out ${key}`} className="edit-line">
-          <span>
-            <span className="mono">{key}</span> to
-          </span>
+        <FormLine
+          key={`out ${key}`}
+          label={
+            <>
+              <Code bg="none" p={0}>
+                {key}
+              </Code>{' '}
+              to
+            </>
+          }
+        >
           <TemplateInput
             label={outputLabel(key)}
             placeholder="nowhere"
@@ -48,7 +64,7 @@ export function DataForm({ node, inputs, outputs }: { node: EditNode; inputs: re
             value={lookup(node.outputs, key) ?? ''}
             onCommit={(typed) => set('out', key, typed)}
           />
-        </div>
+        </FormLine>
       ))}
     </Section>
   )

@@ -2,6 +2,7 @@
 import { NativeSelect, Switch } from '@mantine/core'
 import type { EditNode } from '../../document/editing/model'
 import { passWith, toggleDisabled } from './disabled'
+import { FormLine, FormWords } from './FormParts'
 import { Section } from './Section'
 
 export function DisabledForm({ node }: { node: EditNode }) {
@@ -10,15 +11,13 @@ export function DisabledForm({ node }: { node: EditNode }) {
   const outcomes = outcome === undefined || node.outcomes.includes(outcome) ? node.outcomes : [outcome, ...node.outcomes]
   return (
     <Section title="Disable" isClosed={!isDisabled} note={isDisabled ? 'disabled' : undefined}>
-      <div className="edit-line">
-        <span>Disabled</span>
+      <FormLine label="Disabled">
         <Switch size="sm" aria-label="Disabled" checked={isDisabled} onChange={() => void toggleDisabled([node.path])} />
-      </div>
+      </FormLine>
       {outcome === undefined ? (
-        <p className="form-doc">{isDisabled ? 'Its parent passes over it.' : 'A run passes over a disabled node: it is not executed.'}</p>
+        <FormWords>{isDisabled ? 'Its parent passes over it.' : 'A run passes over a disabled node: it is not executed.'}</FormWords>
       ) : (
-        <div className="edit-line">
-          <span>Passes with</span>
+        <FormLine label="Passes with">
           <NativeSelect
             size="xs"
             aria-label="Passes with"
@@ -26,7 +25,7 @@ export function DisabledForm({ node }: { node: EditNode }) {
             data={[...outcomes]}
             onChange={(event) => void passWith(node.path, event.currentTarget.value)}
           />
-        </div>
+        </FormLine>
       )}
     </Section>
   )

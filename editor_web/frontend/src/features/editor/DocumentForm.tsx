@@ -1,12 +1,16 @@
 /** What the behavior itself declares: name, description, outcomes, parameters, userdata. */
 import { lookup, without, type Dict } from '../../document/dict'
+import { ActionIcon, Checkbox, Code, Fieldset, Group, NativeSelect, SimpleGrid, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus, IconTrash } from '@tabler/icons-react'
-import { useState, type ReactNode } from 'react'
+import { useState } from 'react'
 import type { DocumentInfo } from '../../api/types'
 import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform } from './apply'
+import { FormLine } from './FormParts'
+import { PlainList } from './PlainList'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
+import { Tool } from './Tool'
 import { draftOf, editor, showEditorRefusal, useEditor } from './store'
 
 type Mapping = Dict<unknown>
@@ -25,15 +29,15 @@ export function DocumentForm() {
   const document = useEditor((s) => draftOf(s).document)
   if (!document) return null
   return (
-    <div className="node-form">
+    <div data-form>
       <Section title="Behavior">
-        <Line label="Name">
+        <FormLine label="Name">
           <TemplateInput
             label="Name of the behavior"
             value={document.name}
             onCommit={(typed) => typed && setDocument('Name', () => ({ name: typed }))}
           />
-        </Line>
+        </FormLine>
         <TemplateInput
           label="Description of the behavior"
           isLong
@@ -41,7 +45,7 @@ export function DocumentForm() {
           value={document.description}
           onCommit={(typed) => setDocument('Description', () => ({ description: typed || null }))}
         />
-        <Line label="Cell">
+        <FormLine label="Cell">
           <TemplateInput
             label="Cell"
             isMono
@@ -49,7 +53,7 @@ export function DocumentForm() {
             value={document.cell ?? ''}
             onCommit={(typed) => setDocument('Cell', () => ({ cell: typed || null }))}
           />
-        </Line>
+        </FormLine>
       </Section>
       <Section title="Outcomes">
         <Outcomes outcomes={document.outcomes} success={document.success} />
@@ -64,24 +68,25 @@ export function DocumentForm() {
   )
 }
 
-function Line({ label, children }: { label: string; children: ReactNode }) {
-  return (
-    <div className="edit-line">
-      <span>{label}</span>
-      {children}
-    </div>
-  )
-}
-
 function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success: readonly string[] }) {
   return (
     <>
-      <ul className="plain-list outcome-list">
+      <PlainList>
         {outcomes.map((outcome) => (
           <li key={outcome}>
-            <label>
-              <input
-                type="checkbox"
+            <Group justify="space-between" mih={28}>
+              <Checkbox
+                size="xs"
+                label={
+                  <>
+                    <Code bg="none" p={0}>
+                      {outcome}
+                    </Code>{' '}
+                    <Text span size="xs" c="dimmed">
+                      {success.includes(outcome) ? 'means success' : ''}
+                    </Text>
+                  </>
+                }
                 checked={success.includes(outcome)}
                 onChange={({ currentTarget: { checked } }) =>
                   setDocument('Success', (now) => ({
@@ -89,25 +94,19 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
                   }))
                 }
               />
-              <span className="mono">{outcome}</span>
-              <span className="quiet">{success.includes(outcome) ? 'means success' : ''}</span>
-            </label>
-            <button
-              type="button"
-              className="mini"
-              aria-label={`Remove the outcome ${outcome}`}
-              onClick={() =>
-                setDocument(`Remove ${outcome}`, (now) => ({
-                  outcomes: now.outcomes.filter((each) => each !== outcome),
-                  success: now.success.filter((each) => each !== outcome),
-                }))
-              }
-            >
-              <IconTrash size={13} aria-hidden />
-            </button>
+              <Remove
+                label={`Remove the outcome ${outcome}`}
+                onPress={() =>
+                  setDocument(`Remove ${outcome}`, (now) => ({
+                    outcomes: now.outcomes.filter((each) => each !== outcome),
+                    success: now.success.filter((each) => each !== outcome),
+                  }))
+                }
+              />
+            </Group>
           </li>
         ))}
-      </ul>
+      </PlainList>
       <AddName
         label="New outcome"
         onAdd={(name) => setDocument(`Add ${name}`, (now) => ({ outcomes: [...new Set([...now.outcomes, name])] }))}
@@ -130,75 +129,77 @@ function Parameters({ parameters }: { parameters: Mapping }) {
         const parameter = mappingOf(given)
         const isNumber = parameter['type'] === 'number' || parameter['type'] === 'integer'
         return (
-          <fieldset key={name} className="parameter-card">
-            <legend>
-              <span className="mono">{name}</span>
-              <button
-                type="button"
-                className="mini"
-                aria-label={`Remove the parameter ${name}`}
-                onClick={() => setDocument(`Remove ${name}`, (now) => ({ parameters: withoutOrNull(now.parameters, name) }))}
-              >
-                <IconTrash size={13} aria-hidden />
-              </button>
-            </legend>
-            <Line label="Type">
-              <select
-                className="plain-input"
-                aria-label={`Type of ${name}`}
-                value={shownValue(parameter['type'])}
-                onChange={(event) => set(name, { type: event.currentTarget.value })}
-              >
-                {TYPES.map((type) => (
-                  <option key={type} value={type}>
-                    {type}
-                  </option>
-                ))}
-              </select>
-            </Line>
-            <Line label="Default">
+          <Fieldset
+            key={name}
+            px="xs"
+            pt={0}
+            pb="xs"
+            legend={
+              <Group gap={4}>
+                <Code bg="none" p={0} fw={600}>
+                  {name}
+                </Code>
+                <Remove
+                  label={`Remove the parameter ${name}`}
+                  onPress={() => setDocument(`Remove ${name}`, (now) => ({ parameters: withoutOrNull(now.parameters, name) }))}
+                />
+              </Group>
+            }
+          >
+            <Stack gap={6}>
+              <FormLine label="Type">
+                <NativeSelect
+                  size="xs"
+                  aria-label={`Type of ${name}`}
+                  value={shownValue(parameter['type'])}
+                  onChange={(event) => set(name, { type: event.currentTarget.value })}
+                  data={[...TYPES]}
+                />
+              </FormLine>
+              <FormLine label="Default">
+                <TemplateInput
+                  label={`Default of ${name}`}
+                  placeholder="must be given"
+                  value={shownValue(parameter['default'])}
+                  onCommit={(typed) =>
+                    set(name, {
+                      default: typed === '' ? undefined : parameter['type'] === 'string' ? typed : looseValue(typed),
+                    })
+                  }
+                />
+              </FormLine>
+              {isNumber && (
+                <SimpleGrid cols={3} spacing={6}>
+                  <TemplateInput
+                    label={`Minimum of ${name}`}
+                    inputMode="decimal"
+                    placeholder="min"
+                    value={shownValue(parameter['minimum'])}
+                    onCommit={(typed) => set(name, { minimum: typed === '' ? undefined : looseValue(typed) })}
+                  />
+                  <TemplateInput
+                    label={`Maximum of ${name}`}
+                    inputMode="decimal"
+                    placeholder="max"
+                    value={shownValue(parameter['maximum'])}
+                    onCommit={(typed) => set(name, { maximum: typed === '' ? undefined : looseValue(typed) })}
+                  />
+                  <TemplateInput
+                    label={`Unit of ${name}`}
+                    placeholder="unit"
+                    value={shownValue(parameter['unit'])}
+                    onCommit={(typed) => set(name, { unit: typed })}
+                  />
+                </SimpleGrid>
+              )}
               <TemplateInput
-                label={`Default of ${name}`}
-                placeholder="must be given"
-                value={shownValue(parameter['default'])}
-                onCommit={(typed) =>
-                  set(name, {
-                    default: typed === '' ? undefined : parameter['type'] === 'string' ? typed : looseValue(typed),
-                  })
-                }
+                label={`Description of ${name}`}
+                placeholder="What it means"
+                value={shownValue(parameter['description'])}
+                onCommit={(typed) => set(name, { description: typed })}
               />
-            </Line>
-            {isNumber && (
-              <div className="edit-line three">
-                <TemplateInput
-                  label={`Minimum of ${name}`}
-                  inputMode="decimal"
-                  placeholder="min"
-                  value={shownValue(parameter['minimum'])}
-                  onCommit={(typed) => set(name, { minimum: typed === '' ? undefined : looseValue(typed) })}
-                />
-                <TemplateInput
-                  label={`Maximum of ${name}`}
-                  inputMode="decimal"
-                  placeholder="max"
-                  value={shownValue(parameter['maximum'])}
-                  onCommit={(typed) => set(name, { maximum: typed === '' ? undefined : looseValue(typed) })}
-                />
-                <TemplateInput
-                  label={`Unit of ${name}`}
-                  placeholder="unit"
-                  value={shownValue(parameter['unit'])}
-                  onCommit={(typed) => set(name, { unit: typed })}
-                />
-              </div>
-            )}
-            <TemplateInput
-              label={`Description of ${name}`}
-              placeholder="What it means"
-              value={shownValue(parameter['description'])}
-              onCommit={(typed) => set(name, { description: typed })}
-            />
-          </fieldset>
+            </Stack>
+          </Fieldset>
         )
       })}
       <AddName
@@ -218,23 +219,25 @@ function Userdata({ userdata }: { userdata: Mapping }) {
   return (
     <>
       {Object.entries(userdata).map(([name, value]) => (
-        <div key={name} className="edit-line">
-          <span className="mono">{name}</span>
+        <FormLine
+          key={name}
+          label={
+            <Code bg="none" p={0}>
+              {name}
+            </Code>
+          }
+        >
           <TemplateInput
             label={`Value of ${name}`}
             isMono
             value={value === null ? 'null' : shownValue(value)}
             onCommit={(typed) => setDocument(`Userdata ${name}`, (now) => ({ userdata: { ...now.userdata, [name]: looseValue(typed) } }))}
           />
-          <button
-            type="button"
-            className="mini"
-            aria-label={`Remove the key ${name}`}
-            onClick={() => setDocument(`Remove ${name}`, (now) => ({ userdata: withoutOrNull(now.userdata, name) }))}
-          >
-            <IconTrash size={13} aria-hidden />
-          </button>
-        </div>
+          <Remove
+            label={`Remove the key ${name}`}
+            onPress={() => setDocument(`Remove ${name}`, (now) => ({ userdata: withoutOrNull(now.userdata, name) }))}
+          />
+        </FormLine>
       ))}
       <AddName
         label="New key"
@@ -249,7 +252,6 @@ function AddName({ label, taken, onAdd }: { label: string; taken: readonly strin
   const [name, setName] = useState('')
   return (
     <form
-      className="add-name"
       onSubmit={(event) => {
         event.preventDefault()
         const typed = name.trim()
@@ -261,17 +263,28 @@ function AddName({ label, taken, onAdd }: { label: string; taken: readonly strin
         }
       }}
     >
-      <input
-        className="plain-input"
-        aria-label={label}
-        placeholder={label}
-        value={name}
-        onChange={(event) => setName(event.currentTarget.value)}
-      />
-      <button type="submit" className="command" aria-label={`Add: ${label}`}>
-        <IconPlus size={14} aria-hidden />
-      </button>
+      <Group gap={6} wrap="nowrap">
+        <TextInput
+          size="xs"
+          flex={1}
+          aria-label={label}
+          placeholder={label}
+          value={name}
+          onChange={(event) => setName(event.currentTarget.value)}
+        />
+        <ActionIcon type="submit" variant="default" size={30} aria-label={`Add: ${label}`}>
+          <IconPlus size={14} aria-hidden />
+        </ActionIcon>
+      </Group>
     </form>
+  )
+}
+
+function Remove({ label, onPress }: { label: string; onPress: () => void }) {
+  return (
+    <Tool isSmall label={label} onPress={onPress}>
+      <IconTrash size={13} aria-hidden />
+    </Tool>
   )
 }
 

@@ -1,5 +1,6 @@
 /** The head of the editor: which behavior, whether it is saved, and what can be done with all of it. */
 import { openSearch } from '../../api/search'
+import { Badge, Box, Button, Group, Text, Title } from '@mantine/core'
 import {
   IconArrowBackUp,
   IconArrowForwardUp,
@@ -17,6 +18,7 @@ import { nameOfPath } from '../../document/path'
 import { redo, undo } from './apply'
 import { EditHistory } from './EditHistory'
 import { FileMenu } from './FileMenu'
+import classes from './frame.module.css'
 import { save } from './session'
 import { draftOf, isDirty, setEditor, useEditor } from './store'
 
@@ -29,20 +31,23 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
   const isTextShown = useEditor((s) => s.isTextShown)
   const noSave = mayEdit ? undefined : 'you may look only'
   return (
-    <header className="page-head edit-head">
-      <div className="page-head-text">
-        <h1>
-          {name}
+    <header className={classes['head']} data-editor-head>
+      <Box miw={0}>
+        <Group gap="xs" wrap="nowrap">
+          <Title order={1} fz="lg" fw={650} lh={1.25}>
+            {name}
+          </Title>
           {dirty && (
-            <span className="dirty-mark" role="status">
+            <Badge variant="light" color="orange" c="var(--stopped)" bg="var(--stopped-soft)" tt="none" role="status" data-unsaved>
               not saved
-            </span>
+            </Badge>
           )}
-        </h1>
-        <p className="quiet mono">{id}</p>
-      </div>
-      <span className="spacer" />
-      <div className="command-row">
+        </Group>
+        <Text size="xs" c="dimmed" ff="monospace" truncate>
+          {id}
+        </Text>
+      </Box>
+      <div className={classes['commands']}>
         <CommandButton
           isCompact
           label="Undo"
@@ -113,6 +118,8 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
   )
 }
 
+const LOOKS = { failed: 'var(--failed)', warning: 'var(--stopped)', done: 'dimmed' }
+
 function ProblemCount() {
   const errors = useEditor((s) => problemsOf(draftOf(s)).filter((finding) => finding.severity === 'error').length)
   const warnings = useEditor((s) => problemsOf(draftOf(s)).length) - errors
@@ -122,10 +129,19 @@ function ProblemCount() {
       : [errors > 0 && count(errors, 'error'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(', ')
   const status = errors > 0 ? 'failed' : warnings > 0 ? 'warning' : 'done'
   return (
-    <button type="button" className={`command problem-count is-${status}`} onClick={() => setEditor({ tab: 'problems' })}>
-      <StatusIcon status={status} size={15} />
+    <Button
+      size="compact-sm"
+      h={30}
+      fw={550}
+      variant={status === 'done' ? 'subtle' : 'default'}
+      c={LOOKS[status]}
+      {...(status === 'failed' ? { bd: '1px solid var(--failed)' } : {})}
+      leftSection={<StatusIcon status={status} size={15} />}
+      data-problem-count
+      onClick={() => setEditor({ tab: 'problems' })}
+    >
       <span aria-live="polite">{words}</span>
-    </button>
+    </Button>
   )
 }
 

@@ -1,7 +1,6 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
 import { lookup } from '../../document/dict'
-import './styles/index.css'
-import { Tabs } from '@mantine/core'
+import { Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
 import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
@@ -22,6 +21,7 @@ import { DataFlowPanel } from './DataFlowPanel'
 import { EditorHead } from './EditorHead'
 import { FileDialogs } from './FileDialogs'
 import { useFileDialog } from './fileDialogs'
+import classes from './frame.module.css'
 import { Inspector } from './Inspector'
 import { KeySheet } from './KeySheet'
 import { storeDraftNow } from './draftStorage'
@@ -75,7 +75,7 @@ export function EditorPage(props: EditorPageProps) {
   useEffect(() => refreshReferences(written), [written])
   useUnsavedGuard()
   if (phase === 'failed') return <Empty title="This behavior cannot be edited">{problem}</Empty>
-  if (phase === 'loading') return <div className="page-wait" role="status" aria-label="Loading" />
+  if (phase === 'loading') return <Loader size="sm" m="auto" role="status" aria-label="Loading" />
   return (
     <ReactFlowProvider>
       <CellViewContext value={props.hasCellView}>
@@ -159,15 +159,15 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     </ViewBoundary>
   )
   const canvas = (
-    <div className="canvas-area">
+    <Stack h="100%" mih={0} gap={0}>
       <CanvasBar hasMap={hasMap} onMap={() => setMap(!hasMap)} boxSelects={boxSelects} onBoxSelects={() => setBoxSelects(!boxSelects)} />
-      <div className="canvas-with-flow">
+      <div className={classes['canvas']}>
         <ViewBoundary name="Canvas">
           <Canvas hasMap={hasMap} boxSelects={boxSelects} />
         </ViewBoundary>
         {hasFlow && isNarrow && flow}
       </div>
-    </div>
+    </Stack>
   )
   const text = (
     <Loading name="Text">
@@ -175,11 +175,11 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     </Loading>
   )
   return (
-    <div className="editor" ref={element} aria-busy={isBusy}>
+    <div className={classes['editor']} ref={element} data-editor aria-busy={isBusy}>
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
       <NoticeLine />
       {isNarrow ? (
-        <Tabs defaultValue="canvas" className="side-tabs narrow-tabs">
+        <Tabs defaultValue="canvas" className={classes['tabs']}>
           <Tabs.List>
             <Tabs.Tab value="canvas">Canvas</Tabs.Tab>
             <Tabs.Tab value="library">Library</Tabs.Tab>
@@ -192,19 +192,19 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
           <Tabs.Panel value="text">{text}</Tabs.Panel>
         </Tabs>
       ) : (
-        <Group orientation="horizontal" className="work-space">
+        <Group orientation="horizontal" className={classes['panes'] ?? ''}>
           <Pane id="library" defaultSize="17%" minSize="12%" maxSize="34%">
             {hasFlow ? flow : library}
           </Pane>
-          <Separator className="splitter" aria-label="Width of the library" />
-          <Pane id="middle" defaultSize="57%" minSize="30%" className="editor-middle">
+          <Separator className={classes['splitter'] ?? ''} aria-label="Width of the library" />
+          <Pane id="middle" defaultSize="57%" minSize="30%" style={{ position: 'relative' }}>
             <Group orientation="vertical">
               <Pane id="canvas" defaultSize={isTextShown ? '56%' : '100%'} minSize="20%">
                 {canvas}
               </Pane>
               {isTextShown && (
                 <>
-                  <Separator className="splitter is-flat" aria-label="Height of the text" />
+                  <Separator className={classes['splitter'] ?? ''} data-flat aria-label="Height of the text" />
                   <Pane id="text" defaultSize="44%" minSize="15%">
                     {text}
                   </Pane>
@@ -213,7 +213,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
             </Group>
             {preview}
           </Pane>
-          <Separator className="splitter" aria-label="Width of the form" />
+          <Separator className={classes['splitter'] ?? ''} aria-label="Width of the form" />
           <Pane id="inspector" defaultSize="26%" minSize="20%" maxSize="50%">
             {form}
           </Pane>

@@ -1,20 +1,25 @@
 /** Below the field of a named entry: of what kind it is, what is in it, and who changed it last. */
+import { Box, Flex, Text } from '@mantine/core'
 import { useState } from 'react'
 import { entryQueries } from '../../api/entries'
 import { useLive } from '../../api/live'
 import { useAnswer } from '../../api/queryClient'
 import { entryLines } from '../../document/editing/entryText'
 import { wallTime } from '../../document/time'
+import { FormWords } from './FormParts'
 
 export function EntryDetails({ kind, name }: { kind: string; name: string }) {
   const [isOpen, setOpen] = useState(false)
   return (
-    <details className="entry-details" onToggle={(event) => setOpen(event.currentTarget.open)}>
+    <Box component="details" fz="xs" mt={3} data-entry onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>
-        About {name} <span className="quiet">{kind}</span>
+        About {name}{' '}
+        <Text span inherit c="dimmed">
+          {kind}
+        </Text>
       </summary>
       {isOpen && <Inside kind={kind} name={name} />}
-    </details>
+    </Box>
   )
 }
 
@@ -24,24 +29,28 @@ function Inside({ kind, name }: { kind: string; name: string }) {
   const { value: row, problem: noRow } = useAnswer(entryQueries.row(kind, name))
   const { value: inside, problem: noValue } = useAnswer({ ...entryQueries.value(kind, name), enabled: mayCall })
   const problem = noRow ?? noValue
-  if (problem) return <p className="quiet">{problem}</p>
-  if (row === undefined || (mayCall && inside === undefined)) return <p className="quiet">…</p>
-  if (row === null) return <p className="quiet">It is not in the store.</p>
+  if (problem) return <FormWords>{problem}</FormWords>
+  if (row === undefined || (mayCall && inside === undefined)) return <FormWords>…</FormWords>
+  if (row === null) return <FormWords>It is not in the store.</FormWords>
   const lines = entryLines(kind, inside ?? {})
   const changed = [`revision ${row.revision}`, row.changed_unix_ms > 0 && wallTime(row.changed_unix_ms / 1000), row.by && `by ${row.by}`]
   return (
     <>
-      <p className="quiet">{changed.filter(Boolean).join(', ')}</p>
-      {row.tags.length > 0 && <p className="quiet">{row.tags.join(', ')}</p>}
-      {row.reason && <p className="quiet">{row.reason}</p>}
-      <dl>
+      <FormWords>{changed.filter(Boolean).join(', ')}</FormWords>
+      {row.tags.length > 0 && <FormWords>{row.tags.join(', ')}</FormWords>}
+      {row.reason && <FormWords>{row.reason}</FormWords>}
+      <Box component="dl" m={0}>
         {lines.map((line) => (
-          <div key={line.label}>
-            <dt>{line.label}</dt>
-            <dd className="mono">{line.words}</dd>
-          </div>
+          <Flex key={line.label} justify="space-between" gap="xs">
+            <Text component="dt" inherit c="dimmed">
+              {line.label}
+            </Text>
+            <Box component="dd" m={0} ff="monospace">
+              {line.words}
+            </Box>
+          </Flex>
         ))}
-      </dl>
+      </Box>
     </>
   )
 }

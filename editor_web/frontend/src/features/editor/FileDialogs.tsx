@@ -1,4 +1,5 @@
 /** Giving the file of a behavior another name, copying it, deleting it; who refers to it is shown before. */
+import { Box, Button, Checkbox, Code, Group, Stack, Text, TextInput } from '@mantine/core'
 import { useEffect, useState, type ReactNode } from 'react'
 import { wordsOf } from '../../api/client'
 import { useAnswer } from '../../api/queryClient'
@@ -6,6 +7,7 @@ import { relationQueries, relations } from '../../api/relations'
 import type { ReferringBehavior } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { fileProblem, idOfFile, partsOfId } from '../../document/editing/fileNames'
+import { FormWords } from './FormParts'
 import { openOther } from './pageActions'
 import { closeFileDialog, useFileDialog, type FileDialog } from './fileDialogs'
 import { deleteStoredDraft } from './draftStorage'
@@ -40,20 +42,19 @@ function useReferrers(id: string): readonly ReferringBehavior[] | undefined {
 }
 
 function Referrers({ all, children }: { all: readonly ReferringBehavior[] | undefined; children: ReactNode }) {
-  if (all === undefined) return <p className="quiet">Looking who refers to it …</p>
-  if (all.length === 0) return <p className="quiet">No other behavior refers to it.</p>
+  if (all === undefined) return <FormWords>Looking who refers to it …</FormWords>
+  if (all.length === 0) return <FormWords>No other behavior refers to it.</FormWords>
   return (
-    <div className="referrers">
-      <p>{children}</p>
-      <ul>
+    <Box px="sm" py="xs" bg="var(--stopped-soft)" fz="sm" style={{ borderRadius: 'var(--mantine-radius-md)', overflowWrap: 'anywhere' }}>
+      {children}
+      <Box component="ul" m={0} pl="md">
         {all.map((each) => (
           <li key={each.id}>
-            <span className="mono">{each.id}</span>{' '}
-            <span className="quiet">{each.paths.map((path) => path.replace(/^root\//, '')).join(', ')}</span>
+            <Code bg="none">{each.id}</Code> {each.paths.map((path) => path.replace(/^root\//, '')).join(', ')}
           </li>
         ))}
-      </ul>
-    </div>
+      </Box>
+    </Box>
   )
 }
 
@@ -98,47 +99,46 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
 
   return (
     <form
-      className="new-form file-form"
       onSubmit={(event) => {
         event.preventDefault()
         void go()
       }}
     >
-      <label>
-        Name of the file
-        <input
+      <Stack gap="sm" miw="min(24rem, 80vw)">
+        <TextInput
           ref={first}
-          className="new-input"
+          label="Name of the file"
           value={name}
-          aria-invalid={problem !== undefined}
+          error={problem !== undefined && to !== id}
           onChange={(event) => setName(event.currentTarget.value)}
         />
-      </label>
-      <label>
-        Folder, if any
-        <input className="new-input" value={folder} onChange={(event) => setFolder(event.currentTarget.value)} />
-      </label>
-      <p className="quiet mono new-id">{to}</p>
-      {isRename && (
-        <>
-          <Referrers all={referrers}>Behaviors that refer to it:</Referrers>
-          {referrers && referrers.length > 0 && (
-            <label className="check-line">
-              <input type="checkbox" checked={follows} onChange={(event) => setFollows(event.currentTarget.checked)} />
-              Let them refer to the new name
-            </label>
-          )}
-        </>
-      )}
-      {dirty && <p className="quiet">Unsaved changes are saved first.</p>}
-      {(refusal ?? (to === id ? undefined : problem)) && (
-        <p className="is-failed" role="alert">
-          {refusal ?? problem}
-        </p>
-      )}
-      <button type="submit" className="command is-strong" aria-disabled={problem !== undefined}>
-        {isRename ? 'Rename' : 'Make the copy'}
-      </button>
+        <TextInput label="Folder, if any" value={folder} onChange={(event) => setFolder(event.currentTarget.value)} />
+        <Text size="xs" c="dimmed" ff="monospace" style={{ overflowWrap: 'anywhere' }}>
+          {to}
+        </Text>
+        {isRename && (
+          <>
+            <Referrers all={referrers}>Behaviors that refer to it:</Referrers>
+            {referrers && referrers.length > 0 && (
+              <Checkbox
+                size="xs"
+                label="Let them refer to the new name"
+                checked={follows}
+                onChange={(event) => setFollows(event.currentTarget.checked)}
+              />
+            )}
+          </>
+        )}
+        {dirty && <FormWords>Unsaved changes are saved first.</FormWords>}
+        {(refusal ?? (to === id ? undefined : problem)) && (
+          <Text size="sm" c="var(--failed)" role="alert">
+            {refusal ?? problem}
+          </Text>
+        )}
+        <Button type="submit" aria-disabled={problem !== undefined}>
+          {isRename ? 'Rename' : 'Make the copy'}
+        </Button>
+      </Stack>
     </form>
   )
 }
@@ -157,26 +157,32 @@ function DeleteForm({ id, onGone }: { id: string; onGone: () => void }) {
     }
   }
   return (
-    <div className="new-form file-form">
-      <p>
-        <span className="mono">{id}</span> goes from the disk. Its versions stay: it can be restored with <em>New</em>,{' '}
-        <em>Deleted behaviors</em>.
-      </p>
+    <Stack gap="sm" miw="min(24rem, 80vw)">
+      <Text size="sm">
+        <Code bg="none" p={0}>
+          {id}
+        </Code>{' '}
+        goes from the disk. Its versions stay: it can be restored with <em>New</em>, <em>Deleted behaviors</em>.
+      </Text>
       <Referrers all={referrers}>These refer to it and cannot run without it:</Referrers>
-      {isDirty(editor()) && <p className="is-failed">Unsaved changes are lost.</p>}
-      {refusal && (
-        <p className="is-failed" role="alert">
-          {refusal}
-        </p>
+      {isDirty(editor()) && (
+        <Text size="sm" c="var(--failed)">
+          Unsaved changes are lost.
+        </Text>
       )}
-      <div className="command-row">
-        <button type="button" className="command is-danger" onClick={() => void go()}>
+      {refusal && (
+        <Text size="sm" c="var(--failed)" role="alert">
+          {refusal}
+        </Text>
+      )}
+      <Group gap="xs">
+        <Button variant="default" c="var(--failed)" bd="1px solid var(--failed)" onClick={() => void go()}>
           Delete {partsOfId(id).name}
-        </button>
-        <button type="button" className="command is-quiet" ref={first} onClick={closeFileDialog}>
+        </Button>
+        <Button variant="subtle" color="gray" c="dimmed" ref={first} onClick={closeFileDialog}>
           Keep it
-        </button>
-      </div>
-    </div>
+        </Button>
+      </Group>
+    </Stack>
   )
 }

@@ -1,5 +1,5 @@
 /** What can be done with the behavior as a file: versions, another name, a copy, a picture, deleting. */
-import { Menu } from '@mantine/core'
+import { ActionIcon, Menu } from '@mantine/core'
 import { IconCopy, IconCursorText, IconDots, IconFileTypePng, IconFileTypeSvg, IconHistory, IconTrash } from '@tabler/icons-react'
 import { exportPicture } from './exporting'
 import { openFileDialog } from './fileDialogs'
@@ -8,9 +8,9 @@ export function FileMenu({ mayEdit }: { mayEdit: boolean }) {
   return (
     <Menu position="bottom-end" shadow="md" width={230} returnFocus>
       <Menu.Target>
-        <button type="button" className="command is-compact" aria-label="File" title="Versions, rename, copy, picture, delete">
+        <ActionIcon variant="default" size={30} aria-label="File" title="Versions, rename, copy, picture, delete">
           <IconDots size={16} aria-hidden />
-        </button>
+        </ActionIcon>
       </Menu.Target>
       <Menu.Dropdown>
         <Menu.Item leftSection={<IconHistory size={15} aria-hidden />} onClick={() => openFileDialog('versions')}>

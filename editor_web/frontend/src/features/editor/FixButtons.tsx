@@ -1,4 +1,5 @@
 /** What would fix a problem, each to be chosen; and the problems of one node in its form. */
+import { Box, Button, Group, UnstyledButton, VisuallyHidden } from '@mantine/core'
 import { IconBulb } from '@tabler/icons-react'
 import type { Fix } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
@@ -6,21 +7,33 @@ import { problemsOf } from '../../document/editing/findings'
 import { statusOf } from '../../document/runState'
 import { makeFix } from './fixes'
 import { goTo } from './problems'
+import { PlainList } from './PlainList'
+import rows from './row.module.css'
 import { draftOf, useEditor } from './store'
 
 export function FixButtons({ fixes }: { fixes: readonly Fix[] }) {
   if (fixes.length === 0) return null
   return (
-    <div className="fixes" role="group" aria-label="Fixes">
+    <Group gap={5} mt={5} role="group" aria-label="Fixes">
       {fixes.map((fix) => (
-        <button key={fix.title} type="button" className="fix" onClick={() => makeFix(fix)}>
-          <IconBulb size={13} aria-hidden />
+        <Button
+          key={fix.title}
+          size="compact-xs"
+          variant="default"
+          radius="xl"
+          h="auto"
+          mih={26}
+          py={2}
+          styles={{ label: { whiteSpace: 'normal' } }}
+          leftSection={<IconBulb size={13} color="var(--stopped)" aria-hidden />}
+          onClick={() => makeFix(fix)}
+        >
           <span>
             <Words text={fix.title} />
           </span>
-        </button>
+        </Button>
       ))}
-    </div>
+    </Group>
   )
 }
 
@@ -35,18 +48,20 @@ export function NodeFindings({ path }: { path: string }) {
   const own = findings.filter((finding) => finding.path === path)
   if (own.length === 0) return null
   return (
-    <ul className="plain-list node-findings" aria-label="Problems of this node">
-      {own.map((finding, index) => (
-        <li key={index}>
-          <button type="button" className="problem" title={`${finding.message}. Show it with its fixes`} onClick={() => goTo(finding)}>
-            <StatusIcon status={statusOf(finding.severity)} size={15} />
-            <span className="problem-line">
-              <span className="visually-hidden">{finding.severity}: </span>
-              <Words text={finding.message} />
-            </span>
-          </button>
-        </li>
-      ))}
-    </ul>
+    <Box px="xs" bg="var(--canvas)">
+      <PlainList label="Problems of this node">
+        {own.map((finding, index) => (
+          <li key={index}>
+            <UnstyledButton className={rows['row']} title={`${finding.message}. Show it with its fixes`} onClick={() => goTo(finding)}>
+              <StatusIcon status={statusOf(finding.severity)} size={15} />
+              <span className={rows['line']}>
+                <VisuallyHidden>{finding.severity}: </VisuallyHidden>
+                <Words text={finding.message} />
+              </span>
+            </UnstyledButton>
+          </li>
+        ))}
+      </PlainList>
+    </Box>
   )
 }

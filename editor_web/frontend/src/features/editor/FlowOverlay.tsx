@@ -7,11 +7,13 @@ import { useDataFlow } from './dataFlow'
 import type { CanvasNode } from './elements'
 import { nodeBoxes } from './nodeBoxes'
 import { ArrowHeads } from './ArrowHeads'
+import classes from './canvas.module.css'
 
 const CHIP = { width: 88, height: 26 }
 const LEGIBLE = 14
+const OVER = { position: 'absolute', top: 0, left: 0, zIndex: 5, width: 1, height: 1, overflow: 'visible', pointerEvents: 'none' } as const
 
-const FLOW_ARROWS = ['flow-arrow', 'flow-arrow-unsure']
+const FLOW_ARROWS = { 'flow-arrow': 'var(--flow)', 'flow-arrow-unsure': 'var(--stopped)' }
 
 export function FlowOverlay() {
   const isShown = useDataFlow((s) => s.isShown)
@@ -30,18 +32,14 @@ function Arrows() {
   const ends = new Set(links.flatMap((link) => [link.from, link.to]))
   return (
     <ViewportPortal>
-      <svg className="flow-overlay" role="img" aria-label={wordsFor(links, key)}>
-        <ArrowHeads ids={FLOW_ARROWS} />
+      <svg className={classes['overlay']} style={OVER} role="img" aria-label={wordsFor(links, key)}>
+        <ArrowHeads colours={FLOW_ARROWS} />
         {[...ends].map((path) => {
           const box = boxes.get(path)
-          return (
-            box && (
-              <rect key={path} x={box.x - 4} y={box.y - 4} width={box.width + 8} height={box.height + 8} rx={13} className="flow-end" />
-            )
-          )
+          return box && <rect key={path} x={box.x - 4} y={box.y - 4} width={box.width + 8} height={box.height + 8} rx={13} opacity={0.75} />
         })}
         {hasChip && (
-          <g transform={`translate(${chip.x} ${chip.y})`} className="flow-chip">
+          <g transform={`translate(${chip.x} ${chip.y})`} className={classes['chip']}>
             <rect width={chip.width} height={chip.height} rx={13} />
             <text x={chip.width / 2} y={17}>
               behavior
@@ -54,7 +52,7 @@ function Arrows() {
           if (!from || !to) return null
           const { path, middle } = flowCurve(from, to)
           return (
-            <g key={`${link.from} ${link.to}`} className={link.isUnsure ? 'flow-link is-unsure' : 'flow-link'}>
+            <g key={`${link.from} ${link.to}`} data-link data-unsure={link.isUnsure || undefined}>
               <path d={path} markerEnd={`url(#flow-arrow${link.isUnsure ? '-unsure' : ''})`} />
               {hasWords && (
                 <text x={middle.x} y={middle.y}>

@@ -1,9 +1,10 @@
 /** The form of what is chosen: the node, the behavior itself, and the problems of both. */
-import { Tabs } from '@mantine/core'
+import { Badge, Tabs } from '@mantine/core'
 import { problemsOf } from '../../document/editing/findings'
 import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { ArrowForm } from './ArrowForm'
 import { DocumentForm } from './DocumentForm'
+import classes from './frame.module.css'
 import { NodeForm } from './NodeForm'
 import { ProblemList } from './ProblemList'
 import { SelectionForm } from './SelectionForm'
@@ -17,7 +18,8 @@ export function Inspector() {
     <Tabs
       value={tab}
       onChange={(value) => setEditor({ tab: (value ?? 'node') as SideTab })}
-      className="side-tabs inspector"
+      className={classes['tabs']}
+      data-inspector
       keepMounted={false}
     >
       <Tabs.List>
@@ -25,21 +27,19 @@ export function Inspector() {
         <Tabs.Tab value="document">Behavior</Tabs.Tab>
         <Tabs.Tab value="problems">
           Problems
-          {problems > 0 && <span className="tab-count">{problems}</span>}
+          {problems > 0 && (
+            <Badge size="sm" ml={6} px={6} variant="light" c="var(--stopped)" bg="var(--stopped-soft)">
+              {problems}
+            </Badge>
+          )}
         </Tabs.Tab>
       </Tabs.List>
-      <Tabs.Panel value="node">
-        <div className="tab-body is-flush form-scroll">{arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}</div>
-      </Tabs.Panel>
+      <Tabs.Panel value="node">{arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}</Tabs.Panel>
       <Tabs.Panel value="document">
-        <div className="tab-body is-flush form-scroll">
-          <DocumentForm />
-        </div>
+        <DocumentForm />
       </Tabs.Panel>
-      <Tabs.Panel value="problems">
-        <div className="tab-body form-scroll">
-          <ProblemList />
-        </div>
+      <Tabs.Panel value="problems" p="sm">
+        <ProblemList />
       </Tabs.Panel>
     </Tabs>
   )

@@ -1,5 +1,5 @@
 /** The library: everything that can be put into the behavior, by group, with search and what each is for. */
-import { CloseButton, TextInput } from '@mantine/core'
+import { ActionIcon, Box, CloseButton, Flex, Stack, Text, TextInput, UnstyledButton } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconInfoCircle, IconMapPin, IconSearch } from '@tabler/icons-react'
 import { useMemo, useState, type ReactNode } from 'react'
 import type { CatalogueBody } from '../../api/types'
@@ -10,6 +10,9 @@ import { add, type Addition } from './actions'
 import { entryAddition, itemIcon, itemsOf, type Item } from './additions'
 import { placeForNew } from './paletteRequests'
 import { ADDITION } from './dragging'
+import { FormWords } from './FormParts'
+import { PlainList } from './PlainList'
+import rows from './row.module.css'
 import { LibraryPreview } from './ShowEntry'
 import { showEditorRefusal, useEditor } from './store'
 
@@ -22,32 +25,34 @@ export function LibraryPanel({ tools }: { tools?: ReactNode }) {
   const fitting = found(items, text, (item) => [item.title, item.group, item.summary])
   const groups = [...new Set(fitting.map((item) => item.group))]
   return (
-    <Panel title="Library" className="library">
-      <div className="library-search">
-        <TextInput
-          size="xs"
-          aria-label="Find in the library"
-          placeholder="Find"
-          leftSection={<IconSearch size={14} aria-hidden />}
-          rightSection={text && <CloseButton size="xs" aria-label="Clear" onClick={() => setText('')} />}
-          value={text}
-          onChange={(event) => setText(event.currentTarget.value)}
-        />
-        {tools}
-      </div>
-      <div className="library-list">
-        {groups.map((group) => (
-          <LibraryGroup
-            key={group}
-            title={group}
-            items={fitting.filter((item) => item.group === group)}
-            isSearching={text.trim() !== ''}
-            explained={explained}
-            onExplain={(item) => setExplained(explained === item ? undefined : item)}
+    <Panel title="Library">
+      <Stack gap={0} h="100%">
+        <Stack gap={6} px={8} pt={8} pb={6}>
+          <TextInput
+            size="xs"
+            aria-label="Find in the library"
+            placeholder="Find"
+            leftSection={<IconSearch size={14} aria-hidden />}
+            rightSection={text && <CloseButton size="xs" aria-label="Clear" onClick={() => setText('')} />}
+            value={text}
+            onChange={(event) => setText(event.currentTarget.value)}
           />
-        ))}
-        {groups.length === 0 && <p className="quiet library-none">Nothing in the library fits.</p>}
-      </div>
+          {tools}
+        </Stack>
+        <Box flex={1} mih={0} px={4} pb="sm" style={{ overflowY: 'auto' }}>
+          {groups.map((group) => (
+            <LibraryGroup
+              key={group}
+              title={group}
+              items={fitting.filter((item) => item.group === group)}
+              isSearching={text.trim() !== ''}
+              explained={explained}
+              onExplain={(item) => setExplained(explained === item ? undefined : item)}
+            />
+          ))}
+          {groups.length === 0 && <FormWords>Nothing in the library fits.</FormWords>}
+        </Box>
+      </Stack>
     </Panel>
   )
 }
@@ -86,18 +91,22 @@ function LibraryGroup({ title, items, isSearching, explained, onExplain }: Group
   const isOpen = isSearching || !isClosed
   const Chevron = isOpen ? IconChevronDown : IconChevronRight
   return (
-    <section className="library-group" aria-label={title}>
-      <button type="button" className="library-head" aria-expanded={isOpen} onClick={() => setClosed(!isClosed)}>
-        <Chevron size={14} aria-hidden />
-        {title}
-        <span className="library-count">{items.length}</span>
-      </button>
+    <section aria-label={title}>
+      <UnstyledButton w="100%" px={5} pt={6} pb={4} aria-expanded={isOpen} onClick={() => setClosed(!isClosed)}>
+        <Flex align="center" gap={5} fz="xs" fw={620} c="dimmed">
+          <Chevron size={14} aria-hidden />
+          {title}
+          <Text span inherit fw={450} ml="auto" pr={6}>
+            {items.length}
+          </Text>
+        </Flex>
+      </UnstyledButton>
       {isOpen && (
-        <ul className="plain-list">
+        <PlainList>
           {items.map((item) => (
             <LibraryItem key={item.id} item={item} isExplained={explained === item.id} onExplain={() => onExplain(item.id)} />
           ))}
-        </ul>
+        </PlainList>
       )}
     </section>
   )
@@ -106,11 +115,13 @@ function LibraryGroup({ title, items, isSearching, explained, onExplain }: Group
 function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained: boolean; onExplain: () => void }) {
   const short = item.title.startsWith(`${item.group}.`) ? item.title.slice(item.group.length + 1) : item.title
   return (
-    <li className="library-item">
-      <div className="library-row">
-        <button
-          type="button"
-          className="library-add"
+    <li>
+      <Flex className={rows['around']}>
+        <UnstyledButton
+          className={rows['row']}
+          px={6}
+          py={3}
+          style={{ cursor: 'grab' }}
           draggable
           title={`${item.summary}\nClick to add, or drag to the canvas`}
           aria-label={`Add ${item.title}`}
@@ -120,21 +131,29 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           }}
           onClick={() => addHere(item.addition)}
         >
-          <span className="library-icon">{item.kind === 'entry' ? <IconMapPin size={15} aria-hidden /> : itemIcon(item.kind, 15)}</span>
-          <span className="library-name">{short}</span>
-        </button>
+          {item.kind === 'entry' ? <IconMapPin size={15} aria-hidden /> : itemIcon(item.kind, 15)}
+          <span className={rows['line']}>{short}</span>
+        </UnstyledButton>
         {item.entry && item.entry.kind in PLACED && <LibraryPreview entry={item.entry} />}
-        <button type="button" className="library-info" aria-expanded={isExplained} aria-label={`What is ${item.title}`} onClick={onExplain}>
+        <ActionIcon
+          variant="subtle"
+          color="gray"
+          size={28}
+          className={rows['aside']}
+          aria-expanded={isExplained}
+          aria-label={`What is ${item.title}`}
+          onClick={onExplain}
+        >
           <IconInfoCircle size={15} aria-hidden />
-        </button>
-      </div>
+        </ActionIcon>
+      </Flex>
       {isExplained && (
-        <div className="library-doc">
+        <Stack gap={4} fz="xs" pl="xl" pr={6} pb={6}>
           {item.doc.split(/\n\s*\n/).map((paragraph, index) => (
-            <p key={index}>{paragraph}</p>
+            <div key={index}>{paragraph}</div>
           ))}
-          {item.outcomes.length > 0 && <p className="quiet">Outcomes: {item.outcomes.join(', ')}</p>}
-        </div>
+          {item.outcomes.length > 0 && <FormWords>Outcomes: {item.outcomes.join(', ')}</FormWords>}
+        </Stack>
       )}
     </li>
   )

@@ -2,11 +2,13 @@
 import { getSmoothStepPath, Position, type EdgeProps } from '@xyflow/react'
 import { memo, useMemo } from 'react'
 import { shiftOf } from '../../document/editing/shift'
+import { isFailure } from '../../document/editing/model'
 import { roundedPath, type Point } from '../../document/geometry'
 import type { BranchEdge, TransitionEdge } from './elements'
 import { openInsertPalette } from './paletteRequests'
 import { useTransitionFindings } from './marks'
 import { ArrowHeads } from './ArrowHeads'
+import classes from './canvas.module.css'
 
 export const TransitionLine = memo(function TransitionPath(props: EdgeProps<TransitionEdge>) {
   const { id, source, data, selected } = props
@@ -18,16 +20,24 @@ export const TransitionLine = memo(function TransitionPath(props: EdgeProps<Tran
   const shift = points && shiftOf(points, from, to)
   // As laid out while both its ends are where they were, or have moved together; from port to port otherwise.
   const { path, middle } = shift && laidOut ? laidOut : straight(props)
-  const classes = `${selected ? ' is-selected' : ''}${findings.length > 0 ? ' has-finding' : ''}${data?.isQuiet ? ' is-quiet' : ''}`
   return (
     <g transform={shift && (shift.x !== 0 || shift.y !== 0) ? `translate(${shift.x} ${shift.y})` : undefined}>
       {!data?.isQuiet && <path d={path} className="react-flow__edge-interaction" fill="none" strokeOpacity={0} strokeWidth={18} />}
-      <path d={path} className={`transition-line${classes}`} markerEnd={`url(#edit-arrow${selected ? '-selected' : ''})`}>
+      <path
+        d={path}
+        className={classes['line']}
+        data-line
+        data-selected={selected ? true : undefined}
+        data-failure={isFailure(data?.outcome ?? '') || undefined}
+        data-finding={findings.length > 0 || undefined}
+        data-quiet={data?.isQuiet ? true : undefined}
+        markerEnd={`url(#edit-arrow${selected ? '-selected' : ''})`}
+      >
         {findings.length > 0 && <title>{findings.map((finding) => finding.message).join('\n')}</title>}
       </path>
       {!data?.isQuiet && (
         <g
-          className="insert"
+          className={classes['insert']}
           transform={`translate(${middle.x} ${middle.y})`}
           onPointerDown={(event) => event.stopPropagation()}
           onClick={(event) => {
@@ -84,18 +94,18 @@ export const BranchLine = memo(function BranchLine({ sourceX, sourceY, targetX, 
   return (
     <path
       d={roundedPath(sourceX === targetX ? [points[0] ?? { x: 0, y: 0 }, points[3] ?? { x: 0, y: 0 }] : points, 8)}
-      className="branch-line"
+      className={classes['branch']}
     />
   )
 })
 
-const EDIT_ARROWS = ['edit-arrow', 'edit-arrow-selected']
+const EDIT_ARROWS = { 'edit-arrow': 'var(--edge)', 'edit-arrow-selected': 'var(--accent)' }
 
 /** The heads of all arrows, once per canvas. */
 export function EditArrowHeads() {
   return (
-    <svg className="arrow-heads" aria-hidden>
-      <ArrowHeads ids={EDIT_ARROWS} />
+    <svg width={0} height={0} style={{ position: 'absolute' }} aria-hidden>
+      <ArrowHeads colours={EDIT_ARROWS} />
     </svg>
   )
 }

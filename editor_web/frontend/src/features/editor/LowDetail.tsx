@@ -3,6 +3,7 @@ import { ViewportPortal, type NodeProps } from '@xyflow/react'
 import { memo, useMemo, type ComponentType } from 'react'
 import type { Box, Point } from '../../document/geometry'
 import { parentPath } from '../../document/path'
+import classes from './cards.module.css'
 import type { CanvasEdge, CanvasNode, CardData } from './elements'
 import { useMark } from './marks'
 import { pageStore } from '../../api/pageStore'
@@ -50,9 +51,9 @@ function PlainBox(props: NodeProps<CanvasNode>) {
   const name = type === 'frame' ? (props.data as CardData).node.name : ''
   const size = Math.min(170, (width * 1.5) / Math.max(6, name.length), height / 2)
   return (
-    <div className={`plain-box is-${type}${selected ? ' is-selected' : ''}${mark ? ` is-${mark.severity}` : ''}`}>
+    <div className={classes['box']} data-box={type} data-selected={selected || undefined} data-severity={mark?.severity}>
       {isOuter && type === 'frame' && (
-        <span className="plain-name" style={{ fontSize: size }}>
+        <span className={classes['farName']} style={{ fontSize: size }}>
           {name}
         </span>
       )}
@@ -65,13 +66,15 @@ export interface LowDetailEdgesProps {
   readonly edges: readonly CanvasEdge[]
 }
 
+const OVER = { position: 'absolute', top: 0, left: 0, overflow: 'visible', pointerEvents: 'none' } as const
+
 /** Every arrow and branch in one path. */
 export const LowDetailEdges = memo(function FarLines({ nodes, edges }: LowDetailEdgesProps) {
   const path = useMemo(() => linesOf(nodes, edges), [nodes, edges])
   return (
     <ViewportPortal>
-      <svg className="far-lines" aria-hidden>
-        <path d={path} />
+      <svg style={OVER} data-far-lines aria-hidden>
+        <path d={path} fill="none" stroke="var(--edge)" strokeWidth={5} />
       </svg>
     </ViewportPortal>
   )

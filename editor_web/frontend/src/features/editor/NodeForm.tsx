@@ -1,4 +1,5 @@
 /** The form of one node: what it runs and with what, where its outcomes lead, and what happens when it takes long or fails. */
+import { Box, NativeSelect } from '@mantine/core'
 import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
 import { isForeign, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -14,6 +15,7 @@ import { DataForm } from './DataForm'
 import { DisabledForm } from './DisabledForm'
 import { NodeFindings } from './FixButtons'
 import { FlowSection } from './FlowSection'
+import { FormHead, FormLine, FormWords, LinkButton } from './FormParts'
 import { OrderForm } from './OrderForm'
 import { OutcomeForm } from './OutcomeForm'
 import { ParameterFields } from './ParameterFields'
@@ -21,6 +23,7 @@ import { RulesForm } from './RulesForm'
 import { Section } from './Section'
 import { SettingsForm } from './SettingsForm'
 import { TemplateInput } from './TemplateInput'
+import { Tool } from './Tool'
 import { rootOf, setEditor, useEditor } from './store'
 
 export interface NodeFormProps {
@@ -43,33 +46,27 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
   const set = (field: string, value: unknown, words: string) =>
     void perform(`${words} of ${node.name}`, [setField(node.path, field, value)])
   return (
-    <div className="node-form" aria-label={`Form of ${node.name}`}>
-      <header className="form-head">
-        {itemIcon(node.kind, 18)}
-        <div className="form-head-text">
-          <strong>{node.path === ROOT ? 'The whole behavior' : node.name}</strong>
-          <span className="quiet">
-            {[
-              kindLabel(node.kind),
-              isScope && node.path !== ROOT ? 'fills the canvas' : '',
-              others > 0 ? `and ${others} more selected` : '',
-            ]
-              .filter(Boolean)
-              .join(', ')}
-          </span>
-        </div>
-        {node.path !== ROOT && (
-          <button
-            type="button"
-            className="mini"
-            aria-label={`Rename ${node.name}`}
-            title="Rename (F2)"
-            onClick={() => setEditor({ renaming: node.path, selection: [node.path] })}
-          >
-            <IconCursorText size={15} aria-hidden />
-          </button>
-        )}
-      </header>
+    <div data-form aria-label={`Form of ${node.name}`}>
+      <FormHead
+        icon={itemIcon(node.kind, 18)}
+        title={node.path === ROOT ? 'The whole behavior' : node.name}
+        tools={
+          node.path !== ROOT && (
+            <Tool
+              isSmall
+              label={`Rename ${node.name}`}
+              title="Rename (F2)"
+              onPress={() => setEditor({ renaming: node.path, selection: [node.path] })}
+            >
+              <IconCursorText size={15} aria-hidden />
+            </Tool>
+          )
+        }
+      >
+        {[kindLabel(node.kind), isScope && node.path !== ROOT ? 'fills the canvas' : '', others > 0 ? `and ${others} more selected` : '']
+          .filter(Boolean)
+          .join(', ')}
+      </FormHead>
       <NodeFindings path={node.path} />
       {runs && (
         <Section title={node.kind === 'behavior' ? 'Behavior' : 'State'}>
@@ -80,11 +77,11 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
             options={node.kind === 'state' ? (catalogue?.states.map((each) => each.name) ?? []) : []}
             onCommit={(typed) => typed && set(node.kind, typed, 'Kind')}
           />
-          {state && <p className="form-doc">{state.doc}</p>}
+          {state && <FormWords>{state.doc}</FormWords>}
           {node.document && (
-            <p className="form-doc">
+            <FormWords>
               {behavior?.description} <OpenOther id={node.document} from={node.path} />
-            </p>
+            </FormWords>
           )}
         </Section>
       )}
@@ -129,46 +126,43 @@ function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => 
   if (node.children.length === 0) return null
   return (
     <Section title="Machine">
-      <label className="edit-line">
-        <span>Begins with</span>
-        <select className="plain-input" value={node.initial ?? ''} onChange={(event) => onSet(event.currentTarget.value)}>
-          {!node.children.some((child) => child.name === node.initial) && (
-            <option value={node.initial ?? ''}>{node.initial ?? 'choose'}</option>
-          )}
-          {node.children.map((child) => (
-            <option key={child.name} value={child.name}>
-              {child.name}
-            </option>
-          ))}
-        </select>
-      </label>
+      <FormLine label="Begins with">
+        <NativeSelect
+          size="xs"
+          aria-label="Begins with"
+          value={node.initial ?? ''}
+          data={[
+            ...(node.children.some((child) => child.name === node.initial)
+              ? []
+              : [{ value: node.initial ?? '', label: node.initial ?? 'choose' }]),
+            ...node.children.map((child) => child.name),
+          ]}
+          onChange={(event) => onSet(event.currentTarget.value)}
+        />
+      </FormLine>
     </Section>
   )
 }
 
 function OpenOther({ id, from, node = '' }: { id: string; from: string; node?: string }) {
   return (
-    <button type="button" className="link" onClick={() => openReferred(id, from, node)}>
+    <LinkButton onPress={() => openReferred(id, from, node)}>
       <IconExternalLink size={13} aria-hidden /> Open {nameOfPath(id)}
-    </button>
+    </LinkButton>
   )
 }
 
 function Foreign({ node, root }: { node: EditNode; root: EditNode }) {
   const place = enclosingReference(root, node.path)
   return (
-    <div className="node-form">
-      <header className="form-head">
-        {itemIcon(node.kind, 18)}
-        <div className="form-head-text">
-          <strong>{node.name}</strong>
-          <span className="quiet">Part of a behavior that is referred to; it is changed in its own file.</span>
-        </div>
-      </header>
+    <div data-form>
+      <FormHead icon={itemIcon(node.kind, 18)} title={node.name}>
+        Part of a behavior that is referred to; it is changed in its own file.
+      </FormHead>
       {place?.reference.document && (
-        <p className="form-doc foreign-open">
+        <Box p="sm">
           <OpenOther id={place.reference.document} from={place.reference.path} node={place.inner} />
-        </p>
+        </Box>
       )}
     </div>
   )

@@ -38,7 +38,7 @@ const ICONS: Record<string, typeof IconBox> = {
 export interface NodeIconProps {
   readonly kind: string
   readonly size?: number
-  readonly className?: string
+  readonly className?: string | undefined
 }
 
 export function NodeIcon({ kind, size = 16, className }: NodeIconProps) {

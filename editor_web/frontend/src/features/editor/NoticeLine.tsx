@@ -1,11 +1,14 @@
 /** What the editor has to say: a refusal with its advice, a draft taken up again, a file that changed. */
-import { CloseButton } from '@mantine/core'
+import { Box, CloseButton, Flex, Paper } from '@mantine/core'
 import { IconAlertTriangle, IconCheck, IconHistory } from '@tabler/icons-react'
-import { useEffect } from 'react'
+import { useEffect, type ReactNode } from 'react'
+import { LinkButton } from './FormParts'
+import classes from './frame.module.css'
 import { discard, save } from './session'
 import { editor, setEditor, useEditor } from './store'
 
 const SHORT_MS = 2500
+const TOAST = { zIndex: 20, transform: 'translateX(-50%)', pointerEvents: 'none' } as const
 
 export function NoticeLine() {
   const notice = useEditor((s) => s.notice)
@@ -19,44 +22,64 @@ export function NoticeLine() {
   return (
     <>
       {isOutdated && (
-        <div className="edit-note is-warning" role="alert">
-          <IconAlertTriangle size={16} aria-hidden />
+        <Note tone="warning" icon={<IconAlertTriangle size={16} aria-hidden />}>
           <span>The file has changed on disk since you began. Saving shows both.</span>
-          <button type="button" className="link" onClick={() => void save()}>
-            Compare now
-          </button>
-          <button type="button" className="link" onClick={() => void discard()}>
-            Take the file
-          </button>
-        </div>
+          <LinkButton onPress={() => void save()}>Compare now</LinkButton>
+          <LinkButton onPress={() => void discard()}>Take the file</LinkButton>
+        </Note>
       )}
       {isRestored && !isOutdated && (
-        <div className="edit-note" role="status">
-          <IconHistory size={16} aria-hidden />
+        <Note tone="plain" icon={<IconHistory size={16} aria-hidden />}>
           <span>Your unsaved changes of an earlier visit are here.</span>
-          <button type="button" className="link" onClick={() => void discard()}>
-            Discard them
-          </button>
+          <LinkButton onPress={() => void discard()}>Discard them</LinkButton>
           <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ isRestored: false })} />
-        </div>
+        </Note>
       )}
       {notice?.tone === 'refused' && (
-        <div className="edit-note is-refused" role="alert">
-          <IconAlertTriangle size={16} aria-hidden />
+        <Note tone="refused" icon={<IconAlertTriangle size={16} aria-hidden />}>
           <span>
             <strong>{notice.what}</strong>: {notice.message}
-            {notice.hint && <span className="quiet"> {notice.hint}</span>}
+            {notice.hint && ` ${notice.hint}`}
           </span>
           <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ notice: undefined })} />
-        </div>
+        </Note>
       )}
-      <div className="edit-toast" role="status">
+      <Box pos="absolute" bottom={20} left="50%" style={TOAST} role="status">
         {notice?.tone === 'done' && (
-          <span>
-            <IconCheck size={15} aria-hidden /> {notice.message}
-          </span>
+          <Paper shadow="md" px="md" py={6} bg="var(--text)" c="var(--surface)" radius="xl">
+            <Flex align="center" gap={6} fz="sm" fw={550}>
+              <IconCheck size={15} aria-hidden /> {notice.message}
+            </Flex>
+          </Paper>
         )}
-      </div>
+      </Box>
     </>
+  )
+}
+
+const GROUNDS = { plain: 'var(--accent-soft)', warning: 'var(--stopped-soft)', refused: 'var(--failed-soft)' }
+
+interface NoteProps {
+  readonly tone: keyof typeof GROUNDS
+  readonly icon: ReactNode
+  readonly children: ReactNode
+}
+
+function Note({ tone, icon, children }: NoteProps) {
+  return (
+    <Flex
+      align="center"
+      gap="xs"
+      px="md"
+      py={6}
+      fz="sm"
+      bg={GROUNDS[tone]}
+      className={classes['note']}
+      role={tone === 'plain' ? 'status' : 'alert'}
+      data-notice={tone}
+    >
+      {icon}
+      {children}
+    </Flex>
   )
 }

@@ -1,48 +1,47 @@
 /** The children of a container whose order means something, to be moved up and down. */
+import { Group, List, Text } from '@mantine/core'
 import { IconArrowDown, IconArrowUp } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { choose, focusNode, reorder } from './actions'
+import { LinkButton } from './FormParts'
 import { Section } from './Section'
+import { Tool } from './Tool'
 
 export function OrderForm({ node }: { node: EditNode }) {
   return (
     <Section title="Order of the children">
-      <ol className="order-list">
+      <List type="ordered" size="sm">
         {node.children.map((child, index) => (
-          <li key={child.name}>
-            {child.role && <span className="card-role">{child.role}</span>}
-            <button
-              type="button"
-              className="link"
-              onClick={() => {
+          <List.Item key={child.name}>
+            {child.role && (
+              <Text span size="xs" c="dimmed" mr={6}>
+                {child.role}
+              </Text>
+            )}
+            <LinkButton
+              onPress={() => {
                 choose([child.path])
                 focusNode(child.path)
               }}
             >
               {child.name}
-            </button>
-            <span className="spacer" />
-            <button
-              type="button"
-              className="mini"
-              aria-label={`Move ${child.name} up`}
-              disabled={index === 0}
-              onClick={() => void reorder(node, child.name, -1)}
-            >
-              <IconArrowUp size={13} aria-hidden />
-            </button>
-            <button
-              type="button"
-              className="mini"
-              aria-label={`Move ${child.name} down`}
-              disabled={index === node.children.length - 1}
-              onClick={() => void reorder(node, child.name, 1)}
-            >
-              <IconArrowDown size={13} aria-hidden />
-            </button>
-          </li>
+            </LinkButton>
+            <Group display="inline-flex" gap={0} ml={4} style={{ verticalAlign: 'middle' }}>
+              <Tool isSmall label={`Move ${child.name} up`} isDisabled={index === 0} onPress={() => void reorder(node, child.name, -1)}>
+                <IconArrowUp size={13} aria-hidden />
+              </Tool>
+              <Tool
+                isSmall
+                label={`Move ${child.name} down`}
+                isDisabled={index === node.children.length - 1}
+                onPress={() => void reorder(node, child.name, 1)}
+              >
+                <IconArrowDown size={13} aria-hidden />
+              </Tool>
+            </Group>
+          </List.Item>
         ))}
-      </ol>
+      </List>
     </Section>
   )
 }

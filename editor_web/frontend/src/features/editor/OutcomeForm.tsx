@@ -1,4 +1,5 @@
 /** The outcomes of a node in a machine: where each leads, and from which autonomy on it passes by itself. */
+import { NativeSelect, Table } from '@mantine/core'
 import { lookup, without } from '../../document/dict'
 import { outgoingTransitions, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -23,86 +24,70 @@ export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode
   if (!root || transitions.length === 0) return null
   const inside = parent.children.map((child) => child.name)
   const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter((end) => !inside.includes(end))
+  const groups = (target: string | undefined) => [
+    { group: 'Nodes here', items: inside },
+    {
+      group: parent === root ? 'Outcomes of the behavior' : `Outcomes of ${parent.name}`,
+      items: target && !inside.includes(target) && !ends.includes(target) ? [...ends, target] : ends,
+    },
+  ]
   return (
     <Section title="Outcomes">
-      <table className="edit-table">
-        <thead>
-          <tr>
-            <th scope="col">Outcome</th>
-            <th scope="col">Leads to</th>
-            <th scope="col">Operator</th>
-          </tr>
-        </thead>
-        <tbody>
+      <Table fz="xs" horizontalSpacing={3} verticalSpacing={2} withRowBorders={false}>
+        <Table.Thead c="dimmed">
+          <Table.Tr>
+            <Table.Th fw={500}>Outcome</Table.Th>
+            <Table.Th fw={500}>Leads to</Table.Th>
+            <Table.Th fw={500}>Operator</Table.Th>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
           {transitions.map((transition) => (
-            <tr key={transition.outcome}>
-              <th scope="row" className="mono">
+            <Table.Tr key={transition.outcome}>
+              <Table.Th scope="row" fw={500} ff="monospace" maw="8rem" style={CUT}>
                 {transition.outcome}
-              </th>
-              <td>
-                <select
-                  className={`plain-input${transition.target === undefined ? ' is-loose' : ''}`}
+              </Table.Th>
+              <Table.Td>
+                <NativeSelect
+                  size="xs"
+                  error={transition.target === undefined}
                   aria-label={`${transition.outcome} leads to`}
                   value={transition.target ?? ''}
-                  onChange={(event) => {
-                    const target = event.currentTarget.value
+                  data={[{ value: '', label: 'not connected' }, ...groups(transition.target)]}
+                  onChange={({ currentTarget: { value: target } }) =>
                     void (target ? connect(node.path, transition.outcome, target) : disconnect(node.path, transition.outcome))
-                  }}
-                >
-                  <option value="">not connected</option>
-                  <optgroup label="Nodes here">
-                    {inside.map((name) => (
-                      <option key={name} value={name}>
-                        {name}
-                      </option>
-                    ))}
-                  </optgroup>
-                  <optgroup label={parent === root ? 'Outcomes of the behavior' : `Outcomes of ${parent.name}`}>
-                    {ends.map((name) => (
-                      <option key={name} value={name}>
-                        {name}
-                      </option>
-                    ))}
-                    {transition.target && !inside.includes(transition.target) && !ends.includes(transition.target) && (
-                      <option value={transition.target}>{transition.target}</option>
-                    )}
-                  </optgroup>
-                </select>
-              </td>
-              <td>
+                  }
+                />
+              </Table.Td>
+              <Table.Td>
                 <Autonomy node={node} outcome={transition.outcome} />
-              </td>
-            </tr>
+              </Table.Td>
+            </Table.Tr>
           ))}
-        </tbody>
-      </table>
+        </Table.Tbody>
+      </Table>
     </Section>
   )
 }
 
 const NONE: readonly string[] = []
+const CUT = { overflow: 'hidden', textOverflow: 'ellipsis' } as const
 
 function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
   const level = lookup(node.autonomy, outcome) ?? ''
   return (
-    <select
-      className="plain-input"
+    <NativeSelect
+      size="xs"
       aria-label={`Autonomy of ${outcome}`}
       title={level ? LEVEL_WORDS[level] : 'passes by itself'}
       value={level}
+      data={[{ value: '', label: 'passes' }, ...LEVELS]}
       onChange={({ currentTarget: { value } }) =>
         void performOn(node.path, `Autonomy of ${outcome}`, (now) => {
           const next = value ? { ...now.autonomy, [outcome]: value } : without(now.autonomy, outcome)
           return [setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null)]
         })
       }
-    >
-      <option value="">passes</option>
-      {LEVELS.map((each) => (
-        <option key={each} value={each}>
-          {each}
-        </option>
-      ))}
-    </select>
+    />
   )
 }

@@ -1,7 +1,7 @@
 /** The palettes: what to add, and where an outcome leads. */
 import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
-import { isFailure, isMachine, nodeOf, outgoingTransitions, type EditNode } from '../../document/editing/model'
+import { isMachine, nodeOf, outgoingTransitions, type EditNode } from '../../document/editing/model'
 import { nameOfPath, parentPath } from '../../document/path'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemIcon, itemsOf } from './additions'
@@ -133,7 +133,7 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     title: transition.outcome,
     group: 'Which outcome',
     detail: transition.target === undefined ? 'not connected' : `now leads to ${transition.target}`,
-    icon: <IconCircleDot size={15} className={isFailure(transition.outcome) ? 'is-failure' : ''} aria-hidden />,
+    icon: <IconCircleDot size={15} aria-hidden />,
     // In the same update: what is typed on goes to the next box.
     run: () => openPortPalette(path, transition.outcome),
   }))

@@ -1,6 +1,6 @@
 /** The parameters of a state or behavior, each in the field that fits it; `${…}` is possible in all of them. */
 import { lookup, type Dict } from '../../document/dict'
-import { Switch } from '@mantine/core'
+import { Flex, NativeSelect, SimpleGrid, Space, Stack, Switch, Text } from '@mantine/core'
 import { IconBraces, IconX } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import type { EntryName, KeyView } from '../../api/types'
@@ -19,8 +19,10 @@ import type { EditNode } from '../../document/editing/model'
 import { plainText } from '../../document/values'
 import { perform } from './apply'
 import { EntryDetails } from './EntryDetails'
+import { FormWords } from './FormParts'
 import { FieldPreview } from './ShowEntry'
 import { TemplateInput } from './TemplateInput'
+import { Tool } from './Tool'
 import { useEditor } from './store'
 
 export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly KeyView[] }) {
@@ -28,15 +30,15 @@ export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly
   const known = new Set(keys.map((key) => key.name))
   const undeclared = Object.keys(node.parameters).filter((name) => !known.has(name))
   return (
-    <div className="edit-fields">
+    <Stack gap="xs" data-parameters>
       {keys.map((key) => (
         <ParameterRow key={key.name} node={node} field={editFieldOf(key)} entries={entries} />
       ))}
       {undeclared.map((name) => (
         <UndeclaredRow key={name} node={node} name={name} isKnown={keys.length > 0} />
       ))}
-      {keys.length + undeclared.length === 0 && <p className="quiet">It has no parameters.</p>}
-    </div>
+      {keys.length + undeclared.length === 0 && <FormWords>It has no parameters.</FormWords>}
+    </Stack>
   )
 }
 
@@ -61,42 +63,40 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
   const names = useEditor((s) => s.names ?? s.catalogue?.names ?? NO_NAMES)
   const isFree = asTemplate || isTemplate(value)
   return (
-    <div className={`edit-field${problem ? ' has-problem' : ''}`}>
-      <div className="edit-label">
+    <div data-field={field.name} data-problem={problem !== undefined || undefined}>
+      <Flex align="center" gap={4} mih={22} fz="sm" fw={560}>
         <span>{field.name}</span>
         {field.required && (
-          <span className="required" aria-hidden>
+          <Text span inherit c="var(--failed)" aria-hidden>
             *
-          </span>
+          </Text>
         )}
         {limits && (
-          <span className="field-range" id={`${hintId}-limits`}>
+          <Text span size="xs" c="dimmed" ml={4} id={`${hintId}-limits`}>
             {limits}
-          </span>
+          </Text>
         )}
-        <span className="spacer" />
+        <Space flex={1} />
         {value !== undefined && !field.required && (
-          <button
-            type="button"
-            className="mini"
-            aria-label={`Take ${field.name} back to its default`}
+          <Tool
+            isSmall
+            label={`Take ${field.name} back to its default`}
             title={`Default: ${shownValue(field.fallback) || 'none'}`}
-            onClick={() => set(undefined)}
+            onPress={() => set(undefined)}
           >
             <IconX size={13} aria-hidden />
-          </button>
+          </Tool>
         )}
-        <button
-          type="button"
-          className="mini"
-          aria-pressed={isFree}
-          aria-label={`Write ${field.name} as an expression`}
+        <Tool
+          isSmall
+          isPressed={isFree}
+          label={`Write ${field.name} as an expression`}
           title="Write it as ${…}"
-          onClick={() => setAsTemplate(!asTemplate)}
+          onPress={() => setAsTemplate(!asTemplate)}
         >
           <IconBraces size={13} aria-hidden />
-        </button>
-      </div>
+        </Tool>
+      </Flex>
       <FieldInput
         field={field}
         value={value}
@@ -109,9 +109,9 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
         onPoint={setPointed}
       />
       {field.kind === 'entry' && <FieldPreview node={node} field={field} value={value} entries={entries} pointed={pointed} />}
-      <div className="edit-hint" id={hintId}>
-        {problem ? <span className="is-failed">{problem}</span> : field.description}
-      </div>
+      <Text size="xs" mt={2} c={problem ? 'var(--failed)' : 'dimmed'} id={hintId}>
+        {problem ?? field.description}
+      </Text>
     </div>
   )
 }
@@ -158,20 +158,14 @@ function FieldInput({ field, value, isFree, entries, names, hintId, isInvalid, o
       )
     case 'choice':
       return (
-        <select
-          className="plain-input"
+        <NativeSelect
+          size="xs"
           aria-label={label}
           aria-describedby={hintId}
           value={plainText(value)}
+          data={[{ value: '', label: field.required ? 'choose' : `default${fallback ? `: ${fallback}` : ''}` }, ...field.choices]}
           onChange={(event) => onSet(event.currentTarget.value === '' ? undefined : event.currentTarget.value)}
-        >
-          <option value="">{field.required ? 'choose' : `default${fallback ? `: ${fallback}` : ''}`}</option>
-          {field.choices.map((choice) => (
-            <option key={choice} value={choice}>
-              {choice}
-            </option>
-          ))}
-        </select>
+        />
       )
     case 'vector':
       return <VectorInput field={field} value={value} onSet={onSet} />
@@ -196,7 +190,7 @@ function VectorInput({ field, value, onSet }: { field: EditField; value: unknown
   const given = Array.isArray(value) ? (value as unknown[]) : undefined
   const base = given ?? (Array.isArray(field.fallback) ? (field.fallback as unknown[]) : field.parts.map(() => 0))
   return (
-    <div className="vector">
+    <SimpleGrid cols={field.parts.length} spacing={5}>
       {field.parts.map((part, index) => (
         <TemplateInput
           key={part}
@@ -207,7 +201,7 @@ function VectorInput({ field, value, onSet }: { field: EditField; value: unknown
           onCommit={(typed) => onSet(field.parts.map((_, at) => (at === index ? looseValue(typed || '0') : base[at])))}
         />
       ))}
-    </div>
+    </SimpleGrid>
   )
 }
 
@@ -265,21 +259,25 @@ function nameIn(value: unknown): string | undefined {
 /** A value that its state does not know, or a parameter of a state that is not known. */
 function UndeclaredRow({ node, name, isKnown }: { node: EditNode; name: string; isKnown: boolean }) {
   return (
-    <div className={`edit-field${isKnown ? ' has-problem' : ''}`}>
-      <div className="edit-label">
+    <div data-field={name} data-problem={isKnown || undefined}>
+      <Flex align="center" gap={4} mih={22} fz="sm" fw={560}>
         <span>{name}</span>
-        <span className="spacer" />
-        <button type="button" className="mini" aria-label={`Remove ${name}`} onClick={() => setParameter(node, name, undefined)}>
+        <Space flex={1} />
+        <Tool isSmall label={`Remove ${name}`} onPress={() => setParameter(node, name, undefined)}>
           <IconX size={13} aria-hidden />
-        </button>
-      </div>
+        </Tool>
+      </Flex>
       <TemplateInput
         label={name}
         isMono
         value={shownValue(lookup(node.parameters, name))}
         onCommit={(typed) => setParameter(node, name, typedValue({ kind: 'data' }, typed))}
       />
-      {isKnown && <div className="edit-hint is-failed">There is no such parameter.</div>}
+      {isKnown && (
+        <Text size="xs" mt={2} c="var(--failed)">
+          There is no such parameter.
+        </Text>
+      )}
     </div>
   )
 }

@@ -1,10 +1,11 @@
 /** What happens around a node: guard, timeout, retry, errors, when it is asked again, and what to do with it after a crash. */
-import type { ReactNode } from 'react'
+import { NativeSelect } from '@mantine/core'
 import { lookup } from '../../document/dict'
 import { isFailure, isMachine, isTreePart, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform, performOn } from './apply'
+import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { declaredOutcomes } from './useArrangement'
@@ -31,7 +32,7 @@ export function PolicyForm({ node, parent }: { node: EditNode; parent: EditNode 
   const isSet = [node.guard, node.timeout, node.retry, node.on_error, node.every, node.resume].some((each) => each !== null)
   return (
     <Section title={isPart ? 'Guard' : 'Guard, timeout, retry'} isClosed={!isSet} note={isSet ? 'set' : undefined}>
-      <Line label="Enter only when">
+      <FormLine label="Enter only when">
         <TemplateInput
           label="Guard"
           isMono
@@ -39,7 +40,7 @@ export function PolicyForm({ node, parent }: { node: EditNode; parent: EditNode 
           value={shownValue(node.guard?.['when'])}
           onCommit={(typed) => measure('guard', 'when', typed || undefined)}
         />
-      </Line>
+      </FormLine>
       {node.guard && (
         <Target
           label="Else go to"
@@ -66,14 +67,14 @@ interface ConductProps {
 function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
   return (
     <>
-      <Line label="Stop it after">
+      <FormLine label="Stop it after">
         <TemplateInput
           label="Timeout"
           placeholder="such as 30 s"
           value={shownValue(node.timeout?.['after'])}
           onCommit={(typed) => measure('timeout', 'after', typed === '' ? undefined : looseValue(typed))}
         />
-      </Line>
+      </FormLine>
       {node.timeout && (
         <Target
           label="Then go to"
@@ -83,7 +84,7 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
           onSet={(to) => measure('timeout', 'to', to)}
         />
       )}
-      <Line label="Run again up to">
+      <FormLine label="Run again up to">
         <TemplateInput
           label="Retry, times"
           inputMode="decimal"
@@ -91,25 +92,25 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
           value={shownValue(node.retry?.['times'])}
           onCommit={(typed) => measure('retry', 'times', typed === '' ? undefined : looseValue(typed))}
         />
-      </Line>
+      </FormLine>
       {node.retry && (
         <>
-          <Line label="Wait before">
+          <FormLine label="Wait before">
             <TemplateInput
               label="Retry, first wait"
               placeholder="0 s"
               value={shownValue(node.retry['backoff'])}
               onCommit={(typed) => measure('retry', 'backoff', typed === '' ? undefined : looseValue(typed))}
             />
-          </Line>
-          <Line label="After outcomes">
+          </FormLine>
+          <FormLine label="After outcomes">
             <TemplateInput
               label="Retry, outcomes"
               placeholder="errors only; such as missed, lost"
               value={Array.isArray(node.retry['outcomes']) ? node.retry['outcomes'].join(', ') : ''}
               onCommit={(typed) => measure('retry', 'outcomes', typed === '' ? undefined : typed.split(/[\s,]+/).filter(Boolean))}
             />
-          </Line>
+          </FormLine>
         </>
       )}
       <Target
@@ -121,32 +122,29 @@ function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
         onSet={(to) => set('on_error', to || null)}
       />
       {(node.every !== null || asksAgain(node, parent)) && (
-        <Line label="Ask again every">
+        <FormLine label="Ask again every">
           <TemplateInput
             label="Ask again every"
             placeholder="a check: such as 200 ms"
             value={shownValue(node.every)}
             onCommit={(typed) => set('every', typed === '' ? null : looseValue(typed))}
           />
-        </Line>
+        </FormLine>
       )}
-      <Line label="After a crash">
-        <select
-          className="plain-input"
+      <FormLine label="After a crash">
+        <NativeSelect
+          size="xs"
           aria-label="After a crash"
           value={node.resume ?? ''}
           onChange={(event) => set('resume', event.currentTarget.value || null)}
-        >
-          <option value="">as the state says</option>
-          <option value="rerun">run it again</option>
-          <option value="ask">ask</option>
-          {node.outcomes.map((outcome) => (
-            <option key={outcome} value={outcome}>
-              take it for {outcome}
-            </option>
-          ))}
-        </select>
-      </Line>
+          data={[
+            { value: '', label: 'as the state says' },
+            { value: 'rerun', label: 'run it again' },
+            { value: 'ask', label: 'ask' },
+            ...node.outcomes.map((outcome) => ({ value: outcome, label: `take it for ${outcome}` })),
+          ]}
+        />
+      </FormLine>
     </>
   )
 }
@@ -177,15 +175,6 @@ function worst(targets: readonly string[], success: readonly string[]): string {
   return targets.find(isFailure) ?? targets.find((target) => !success.includes(target)) ?? targets[0] ?? ''
 }
 
-function Line({ label, children }: { label: string; children: ReactNode }) {
-  return (
-    <div className="edit-line">
-      <span>{label}</span>
-      {children}
-    </div>
-  )
-}
-
 interface TargetProps {
   readonly label: string
   readonly name: string
@@ -198,15 +187,17 @@ interface TargetProps {
 
 function Target({ label, name, value, targets, none, onSet }: TargetProps) {
   return (
-    <Line label={label}>
-      <select className="plain-input" aria-label={name} value={value} onChange={(event) => onSet(event.currentTarget.value)}>
-        {(none !== undefined || value === '') && <option value="">{none ?? 'choose'}</option>}
-        {[...new Set([...targets, ...(value ? [value] : [])])].map((target) => (
-          <option key={target} value={target}>
-            {target}
-          </option>
-        ))}
-      </select>
-    </Line>
+    <FormLine label={label}>
+      <NativeSelect
+        size="xs"
+        aria-label={name}
+        value={value}
+        data={[
+          ...(none !== undefined || value === '' ? [{ value: '', label: none ?? 'choose' }] : []),
+          ...new Set([...targets, ...(value ? [value] : [])]),
+        ]}
+        onChange={(event) => onSet(event.currentTarget.value)}
+      />
+    </FormLine>
   )
 }

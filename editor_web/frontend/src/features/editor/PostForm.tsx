@@ -4,6 +4,7 @@ import { setField } from '../../document/editing/edits'
 import { assignedText, assignments } from '../../document/editing/assignmentText'
 import type { EditNode } from '../../document/editing/model'
 import { performOn } from './apply'
+import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 
@@ -24,8 +25,7 @@ export function PostForm({ node }: { node: EditNode }) {
   return (
     <Section title="Assign afterwards" isClosed={node.post === null} note={node.post === null ? undefined : 'set'}>
       {SECTIONS.map(({ key, words }) => (
-        <div key={key} className="edit-line">
-          <span>{words}</span>
+        <FormLine key={key} label={words}>
           <TemplateInput
             label={words}
             isLong
@@ -34,7 +34,7 @@ export function PostForm({ node }: { node: EditNode }) {
             value={assignedText(node.post === null ? undefined : lookup(node.post, key))}
             onCommit={(typed) => set(key, typed)}
           />
-        </div>
+        </FormLine>
       ))}
     </Section>
   )

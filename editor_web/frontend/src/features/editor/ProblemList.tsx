@@ -1,4 +1,5 @@
 /** The problems of the draft, with place and advice; each leads to its node and line. */
+import { Box, NativeSelect, Stack, Text, UnstyledButton, VisuallyHidden } from '@mantine/core'
 import { IconCircleCheck, IconCircleDashed } from '@tabler/icons-react'
 import type { FindingView, Fix } from '../../api/types'
 import { Empty } from '../../components/Empty'
@@ -7,6 +8,9 @@ import { emptyContainers, problemsOf } from '../../document/editing/findings'
 import { statusOf } from '../../document/runState'
 import { FixButtons, Words } from './FixButtons'
 import { fixesOf, useFreshFixes } from './fixes'
+import { FormWords } from './FormParts'
+import { PlainList } from './PlainList'
+import rows from './row.module.css'
 import { goTo } from './problems'
 import { draftOf, setEditor, useEditor } from './store'
 import { setTargetLevel, useTargets, type TargetLevel } from './targets'
@@ -24,17 +28,20 @@ export function ProblemList() {
 function TargetChoice() {
   const { level, problem } = useTargets()
   return (
-    <div className="target-choice">
-      <label>
-        <span>Targets out of reach or in collision</span>
-        <select className="plain-input" value={level} onChange={(event) => setTargetLevel(event.currentTarget.value as TargetLevel)}>
-          <option value="warning">are warnings</option>
-          <option value="error">are errors</option>
-          <option value="off">are not looked for</option>
-        </select>
-      </label>
-      {problem && <p className="quiet">{problem}</p>}
-    </div>
+    <Box mt="sm">
+      <NativeSelect
+        size="xs"
+        label="Targets out of reach or in collision"
+        value={level}
+        data={[
+          { value: 'warning', label: 'are warnings' },
+          { value: 'error', label: 'are errors' },
+          { value: 'off', label: 'are not looked for' },
+        ]}
+        onChange={(event) => setTargetLevel(event.currentTarget.value as TargetLevel)}
+      />
+      {problem && <FormWords>{problem}</FormWords>}
+    </Box>
   )
 }
 
@@ -54,11 +61,11 @@ function Problems() {
     )
   }
   return (
-    <ul className="plain-list problem-list" aria-label="Problems">
+    <PlainList label="Problems">
       {findings.map((finding) => (
         <Problem key={keyOf(finding)} finding={finding} fixes={fixesOf(fixes, finding)} />
       ))}
-    </ul>
+    </PlainList>
   )
 }
 
@@ -72,27 +79,28 @@ function Problem({ finding, fixes }: { readonly finding: FindingView; readonly f
   const isOpen = place?.line === finding.line && place.column === finding.column
   return (
     <li>
-      <button
-        type="button"
-        className="problem"
+      <UnstyledButton
+        className={rows['row']}
         aria-expanded={isOpen}
         onClick={() => (isOpen ? setEditor({ place: undefined }) : goTo(finding))}
       >
         <StatusIcon status={statusOf(finding.severity)} size={16} />
-        <span className="problem-line">
-          <span className="visually-hidden">{finding.severity}: </span>
+        <span className={rows['line']}>
+          <VisuallyHidden>{finding.severity}: </VisuallyHidden>
           <Words text={finding.message} />
         </span>
-        <span className="quiet problem-place">line {finding.line}</span>
-      </button>
+        <Text span size="xs" c="dimmed" flex="none" mt={2}>
+          line {finding.line}
+        </Text>
+      </UnstyledButton>
       {isOpen && (
-        <div className="problem-more">
-          {finding.hint && <p className="quiet">{finding.hint}</p>}
-          <p className="quiet mono problem-place">
+        <Stack gap={4} pl={32} pr={6} pb={8}>
+          {finding.hint && <FormWords>{finding.hint}</FormWords>}
+          <Text size="xs" c="dimmed" ff="monospace">
             {finding.path || 'document'} · {finding.code}
-          </p>
+          </Text>
           <FixButtons fixes={fixes} />
-        </div>
+        </Stack>
       )}
     </li>
   )

@@ -1,42 +1,45 @@
 /** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
 import type { ConcurrencyCondition } from '../../api/types'
 import { lookup } from '../../document/dict'
+import { Box, Button, Checkbox, Group, NativeSelect, Table, VisuallyHidden } from '@mantine/core'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { added, conditionsOf, moved, renamedOutcome, withChild, withCount, without, withPreempted } from '../../document/editing/rules'
 import { perform, performOn } from './apply'
+import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
+import { Tool } from './Tool'
 
 export function RulesForm({ node }: { node: EditNode }) {
   const set = (change: (rules: readonly ConcurrencyCondition[]) => readonly ConcurrencyCondition[], words: string) =>
     void performOn(node.path, words, (now) => [setField(node.path, 'conditions', conditionsOf(change(now.rules)))])
   return (
     <Section title="Ends with" note="the first line that holds">
-      <div className="rules-scroll" role="region" aria-label="Rules" tabIndex={0}>
-        <table className="edit-table rules-table">
-          <thead>
-            <tr>
-              <th scope="col">Outcome</th>
-              <th scope="col">Preempts</th>
-              <th scope="col">How many</th>
+      <Box role="region" aria-label="Rules" tabIndex={0} style={{ overflowX: 'auto' }}>
+        <Table fz="xs" horizontalSpacing={3} verticalSpacing={2} withRowBorders={false}>
+          <Table.Thead c="dimmed">
+            <Table.Tr>
+              <Table.Th fw={500}>Outcome</Table.Th>
+              <Table.Th fw={500}>Preempts</Table.Th>
+              <Table.Th fw={500}>How many</Table.Th>
               {node.children.map((child) => (
-                <th scope="col" key={child.name}>
+                <Table.Th fw={500} key={child.name}>
                   {child.name}
-                </th>
+                </Table.Th>
               ))}
-              <th scope="col">
-                <span className="visually-hidden">Order</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
+              <Table.Th fw={500}>
+                <VisuallyHidden>Order</VisuallyHidden>
+              </Table.Th>
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
             {node.rules.map((rule, index) => (
-              <tr key={index}>
-                <td>
+              <Table.Tr key={index}>
+                <Table.Td miw={88}>
                   {rule.preempt.length > 0 ? (
-                    <span className="rule-outcome">none, goes on</span>
+                    'none, goes on'
                   ) : (
                     <TemplateInput
                       label={`Outcome of rule ${index + 1}`}
@@ -44,102 +47,91 @@ export function RulesForm({ node }: { node: EditNode }) {
                       onCommit={(typed) => typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)}
                     />
                   )}
-                </td>
-                <td>
+                </Table.Td>
+                <Table.Td>
                   <Preempted
                     index={index}
                     rule={rule}
                     names={node.children.map((child) => child.name)}
                     onSet={(child, isPreempted) => set((rules) => withPreempted(rules, index, child, isPreempted), `Rule ${index + 1}`)}
                   />
-                </td>
-                <td>
-                  <select
-                    className="plain-input"
+                </Table.Td>
+                <Table.Td>
+                  <NativeSelect
+                    size="xs"
+                    miw={80}
                     aria-label={`How many in rule ${index + 1}`}
                     value={rule.at_least ?? Object.keys(rule.when).length}
                     onChange={({ currentTarget: { value } }) => set((rules) => withCount(rules, index, Number(value)), `Rule ${index + 1}`)}
-                  >
-                    {Object.keys(rule.when).map((name, at) => (
-                      <option key={name} value={at + 1}>
-                        {at + 1 === Object.keys(rule.when).length ? 'all' : at + 1}
-                      </option>
-                    ))}
-                  </select>
-                </td>
+                    data={Object.keys(rule.when).map((_, at) => ({
+                      value: String(at + 1),
+                      label: at + 1 === Object.keys(rule.when).length ? 'all' : String(at + 1),
+                    }))}
+                  />
+                </Table.Td>
                 {node.children.map((child) => (
-                  <td key={child.name}>
-                    <select
-                      className="plain-input"
+                  <Table.Td key={child.name}>
+                    <NativeSelect
+                      size="xs"
+                      miw={88}
                       aria-label={`${child.name} in rule ${index + 1}`}
                       value={lookup(rule.when, child.name) ?? ''}
                       onChange={({ currentTarget: { value } }) =>
                         set((rules) => withChild(rules, index, child.name, value), `Rule ${index + 1}`)
                       }
-                    >
-                      <option value="">any</option>
-                      {[
+                      data={[
+                        { value: '', label: 'any' },
                         ...new Set([...child.outcomes, ...(lookup(rule.when, child.name) ? [lookup(rule.when, child.name) ?? ''] : [])]),
-                      ].map((outcome) => (
-                        <option key={outcome} value={outcome}>
-                          {outcome}
-                        </option>
-                      ))}
-                    </select>
-                  </td>
+                      ]}
+                    />
+                  </Table.Td>
                 ))}
-                <td className="row-tools">
-                  <button
-                    type="button"
-                    className="mini"
-                    aria-label={`Move rule ${index + 1} up`}
-                    disabled={index === 0}
-                    onClick={() => set((rules) => moved(rules, index, -1), 'Order of rules')}
-                  >
-                    <IconArrowUp size={13} aria-hidden />
-                  </button>
-                  <button
-                    type="button"
-                    className="mini"
-                    aria-label={`Move rule ${index + 1} down`}
-                    disabled={index === node.rules.length - 1}
-                    onClick={() => set((rules) => moved(rules, index, 1), 'Order of rules')}
-                  >
-                    <IconArrowDown size={13} aria-hidden />
-                  </button>
-                  <button
-                    type="button"
-                    className="mini"
-                    aria-label={`Delete rule ${index + 1}`}
-                    onClick={() => set((rules) => without(rules, index), 'Delete a rule')}
-                  >
-                    <IconTrash size={13} aria-hidden />
-                  </button>
-                </td>
-              </tr>
+                <Table.Td>
+                  <Group gap={0} wrap="nowrap">
+                    <Tool
+                      isSmall
+                      label={`Move rule ${index + 1} up`}
+                      isDisabled={index === 0}
+                      onPress={() => set((rules) => moved(rules, index, -1), 'Order of rules')}
+                    >
+                      <IconArrowUp size={13} aria-hidden />
+                    </Tool>
+                    <Tool
+                      isSmall
+                      label={`Move rule ${index + 1} down`}
+                      isDisabled={index === node.rules.length - 1}
+                      onPress={() => set((rules) => moved(rules, index, 1), 'Order of rules')}
+                    >
+                      <IconArrowDown size={13} aria-hidden />
+                    </Tool>
+                    <Tool isSmall label={`Delete rule ${index + 1}`} onPress={() => set((rules) => without(rules, index), 'Delete a rule')}>
+                      <IconTrash size={13} aria-hidden />
+                    </Tool>
+                  </Group>
+                </Table.Td>
+              </Table.Tr>
             ))}
-          </tbody>
-        </table>
-      </div>
-      <div className="command-row">
-        <button
-          type="button"
-          className="command"
-          disabled={node.children.length === 0}
-          onClick={() => set((rules) => added(rules, node.children), 'Add a rule')}
-        >
-          <IconPlus size={14} aria-hidden /> Add a rule
-        </button>
-      </div>
-      <div className="edit-line">
-        <span>Otherwise</span>
+          </Table.Tbody>
+        </Table>
+      </Box>
+      <Button
+        size="compact-sm"
+        variant="default"
+        style={{ alignSelf: 'flex-start' }}
+        leftSection={<IconPlus size={14} aria-hidden />}
+        disabled={node.children.length === 0}
+        onClick={() => set((rules) => added(rules, node.children), 'Add a rule')}
+      >
+        Add a rule
+      </Button>
+      <FormLine label="Otherwise">
         <TemplateInput
           label="Outcome when no rule holds"
           placeholder="none"
           value={node.otherwise ?? ''}
           onCommit={(typed) => void perform('Otherwise', [setField(node.path, 'otherwise', typed || null)])}
         />
-      </div>
+      </FormLine>
     </Section>
   )
 }
@@ -159,17 +151,17 @@ function Preempted({
   const gone = rule.preempt.filter((name) => !names.includes(name))
   const text = rule.preempt.length > 0 ? rule.preempt.join(', ') : 'all'
   return (
-    <details className="rule-preempts">
+    <details>
       <summary aria-label={`${text}: preempted by rule ${index + 1}`}>{text}</summary>
       {[...names, ...gone].map((name) => (
-        <label key={name}>
-          <input
-            type="checkbox"
-            checked={rule.preempt.includes(name)}
-            onChange={({ currentTarget: { checked } }) => onSet(name, checked)}
-          />
-          {name}
-        </label>
+        <Checkbox
+          key={name}
+          size="xs"
+          mt={4}
+          label={name}
+          checked={rule.preempt.includes(name)}
+          onChange={({ currentTarget: { checked } }) => onSet(name, checked)}
+        />
       ))}
     </details>
   )

@@ -1,4 +1,5 @@
 /** What can be done with the chosen nodes, above them; and the field for a new name. */
+import { Group, Paper, Text, TextInput } from '@mantine/core'
 import { NodeToolbar, Position } from '@xyflow/react'
 import {
   IconArrowsDiagonal,
@@ -25,6 +26,7 @@ import { openReferred } from './pageActions'
 import { writeNote } from './notes'
 import { toggleReference } from './references'
 import { editor, isOpenNow, rootOf, setEditor, useEditor } from './store'
+import { Tool } from './Tool'
 
 export function SelectionBar() {
   const selection = useEditor((s) => s.selection)
@@ -44,34 +46,44 @@ export function SelectionBar() {
     const { reference, inner } = foreign
     return (
       <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
-        <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
-          <Act
+        <Bar>
+          <Tool
             label={`Open ${nameOfPath(reference.document ?? '')} at this node`}
             onPress={() => openReferred(reference.document ?? '', reference.path, inner)}
           >
             <IconExternalLink size={16} />
-          </Act>
-        </div>
+          </Tool>
+        </Bar>
       </NodeToolbar>
     )
   }
   return (
     <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
-      <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
+      <Bar>
         {selection.length === 1 ? <One node={node} /> : <Several count={selection.length} />}
         {node.path !== ROOT && (
-          <Act label={`${node.disabled === false ? 'Disable' : 'Enable'} (X)`} onPress={() => void toggleDisabled()}>
+          <Tool label={`${node.disabled === false ? 'Disable' : 'Enable'} (X)`} onPress={() => void toggleDisabled()}>
             <IconPlayerTrackNext size={16} />
-          </Act>
+          </Tool>
         )}
-        <Act label="Duplicate (Ctrl+D)" onPress={() => void duplicate()}>
+        <Tool label="Duplicate (Ctrl+D)" onPress={() => void duplicate()}>
           <IconCopyPlus size={16} />
-        </Act>
-        <Act label="Delete (Del)" onPress={() => void remove()}>
+        </Tool>
+        <Tool label="Delete (Del)" onPress={() => void remove()}>
           <IconTrash size={16} />
-        </Act>
-      </div>
+        </Tool>
+      </Bar>
     </NodeToolbar>
+  )
+}
+
+function Bar({ children }: { children: ReactNode }) {
+  return (
+    <Paper withBorder shadow="md" p={2} role="toolbar" aria-label="Chosen nodes">
+      <Group gap={0} wrap="nowrap">
+        {children}
+      </Group>
+    </Paper>
   )
 }
 
@@ -80,38 +92,38 @@ function One({ node }: { node: EditNode }) {
   const reference = node.document
   return (
     <>
-      <Act label="Add a state or container here (A)" onPress={() => openAddPalette()}>
+      <Tool label="Add a state or container here (A)" onPress={() => openAddPalette()}>
         <IconPlus size={16} />
-      </Act>
-      <Act label="Connect (C)" onPress={openConnectPalette}>
+      </Tool>
+      <Tool label="Connect (C)" onPress={openConnectPalette}>
         <IconPlugConnected size={16} />
-      </Act>
+      </Tool>
       {reference !== null && (
         <>
-          <Act label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'} onPress={() => void toggleReference(node.path)}>
+          <Tool label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'} onPress={() => void toggleReference(node.path)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
-          </Act>
-          <Act label={`Open ${nameOfPath(reference)} in its own page (Enter)`} onPress={() => openReferred(reference, node.path)}>
+          </Tool>
+          <Tool label={`Open ${nameOfPath(reference)} in its own page (Enter)`} onPress={() => openReferred(reference, node.path)}>
             <IconExternalLink size={16} />
-          </Act>
+          </Tool>
         </>
       )}
       {reference === null && (isFrame(node) || (isTreePart(node.kind) && node.children.length > 0)) && (
         <>
-          <Act label={isOpen ? 'Close it (O)' : 'Open it in place (O)'} onPress={() => toggleOpen(node.path, isOpen)}>
+          <Tool label={isOpen ? 'Close it (O)' : 'Open it in place (O)'} onPress={() => toggleOpen(node.path, isOpen)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
-          </Act>
-          <Act label="Go into it (Enter)" onPress={() => enter(node.path)}>
+          </Tool>
+          <Tool label="Go into it (Enter)" onPress={() => enter(node.path)}>
             <IconLogin2 size={16} />
-          </Act>
+          </Tool>
         </>
       )}
-      <Act label="Note (N)" onPress={() => writeNote(node.path)}>
+      <Tool label="Note (N)" onPress={() => writeNote(node.path)}>
         <IconNote size={16} />
-      </Act>
-      <Act label="Rename (F2)" onPress={() => setEditor({ renaming: node.path })}>
+      </Tool>
+      <Tool label="Rename (F2)" onPress={() => setEditor({ renaming: node.path })}>
         <IconCursorText size={16} />
-      </Act>
+      </Tool>
     </>
   )
 }
@@ -119,19 +131,13 @@ function One({ node }: { node: EditNode }) {
 function Several({ count }: { count: number }) {
   return (
     <>
-      <span className="selection-count">{count} chosen</span>
-      <Act label="Group into a machine (Ctrl+G)" onPress={() => void group('machine')}>
+      <Text span size="xs" fw={600} px="xs" style={{ whiteSpace: 'nowrap' }}>
+        {count} chosen
+      </Text>
+      <Tool label="Group into a machine (Ctrl+G)" onPress={() => void group('machine')}>
         <IconBoxMultiple size={16} />
-      </Act>
+      </Tool>
     </>
-  )
-}
-
-function Act({ label, onPress, children }: { label: string; onPress: () => void; children: ReactNode }) {
-  return (
-    <button type="button" className="bar-button" aria-label={label} title={label} onClick={onPress}>
-      {children}
-    </button>
   )
 }
 
@@ -150,28 +156,31 @@ function RenameField({ path }: { path: string }) {
     focusNode(path)
   }
   return (
-    <form
-      className="rename"
+    <Paper
+      component="form"
+      withBorder
+      shadow="md"
+      p={4}
       onSubmit={(event) => {
         event.preventDefault()
         if (!problem) void rename(path, name)
       }}
     >
-      <input
+      <TextInput
         ref={field}
-        className="plain-input"
+        size="xs"
         aria-label={`New name of ${present}`}
-        aria-invalid={problem !== undefined}
+        error={problem !== undefined}
         value={name}
         onChange={(event) => setName(event.currentTarget.value)}
         onKeyDown={(event) => event.key === 'Escape' && cancel()}
         onBlur={() => (problem ? cancel() : void rename(path, name))}
       />
       {problem && (
-        <span className="rename-problem" role="alert">
+        <Text size="xs" c="var(--failed)" px={4} role="alert">
           {problem}
-        </span>
+        </Text>
       )}
-    </form>
+    </Paper>
   )
 }

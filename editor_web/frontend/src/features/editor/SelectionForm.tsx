@@ -6,6 +6,7 @@ import { looseValue, shownValue } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
 import { perform } from './apply'
 import { toggleDisabled } from './disabled'
+import { FormHead, FormLine, FormWords } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
@@ -19,20 +20,14 @@ export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
   const areOff = nodes.every((node) => node.disabled !== false)
   const count = `${nodes.length} nodes`
   return (
-    <div className="node-form" aria-label={`Form of ${count}`}>
-      <header className="form-head">
-        <div className="form-head-text">
-          <strong>{count}</strong>
-          <span className="quiet">{nodes.map((node) => node.name).join(', ')}</span>
-        </div>
-      </header>
+    <div data-form aria-label={`Form of ${count}`}>
+      <FormHead title={count}>{nodes.map((node) => node.name).join(', ')}</FormHead>
       <Section title="Parameters of all">
-        {names.length === 0 && <p className="form-doc">They have no parameter in common.</p>}
+        {names.length === 0 && <FormWords>They have no parameter in common.</FormWords>}
         {names.map((name) => {
           const value = commonValue(nodes, name)
           return (
-            <div key={name} className="edit-line">
-              <span>{name}</span>
+            <FormLine key={name} label={name}>
               <TemplateInput
                 label={`${name} of all`}
                 placeholder={value === MIXED ? 'different values' : 'default'}
@@ -41,7 +36,7 @@ export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
                   void perform(`${name} of ${count}`, setParameterOfAll(nodes, name, typed === '' ? undefined : looseValue(typed)))
                 }
               />
-            </div>
+            </FormLine>
           )
         })}
       </Section>

@@ -6,6 +6,7 @@ import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform } from './apply'
+import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
@@ -19,8 +20,7 @@ export function SettingsForm({ node }: { node: EditNode }) {
   return (
     <Section title="Settings">
       {settings.map((setting) => (
-        <div key={setting.key} className="edit-line">
-          <span title={setting.hint}>{setting.label}</span>
+        <FormLine key={setting.key} label={setting.label} title={setting.hint}>
           {setting.control === 'switch' ? (
             <Switch
               size="sm"
@@ -36,7 +36,7 @@ export function SettingsForm({ node }: { node: EditNode }) {
               onCommit={(typed) => set(setting, typed === '' ? null : looseValue(typed))}
             />
           )}
-        </div>
+        </FormLine>
       ))}
     </Section>
   )

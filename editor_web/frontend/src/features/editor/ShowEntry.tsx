@@ -1,4 +1,5 @@
 /** Shows a named entry in 3D: from the field that holds it, and from the library. */
+import { ActionIcon, Box } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { createContext, useContext, useEffect } from 'react'
 import { showPreview, usePreview } from '../../api/preview'
@@ -7,6 +8,7 @@ import { CommandButton } from '../../components/CommandButton'
 import type { EditField } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
 import { armOf, byDefault, entryNamed, PLACED } from '../../document/editing/preview'
+import rows from './row.module.css'
 import { draftOf, showEditorRefusal, useEditor } from './store'
 
 /** Has the server a 3D view? */
@@ -41,7 +43,7 @@ export function FieldPreview({ node, field, value, entries, pointed }: FieldPrev
   if (field.entryKind && !(field.entryKind in PLACED)) return null
   const why = isShown ? undefined : obstacle()
   return (
-    <div className="field-preview">
+    <Box mt={4}>
       <CommandButton
         label={`Show ${field.name} in 3D`}
         hint={`Show where ${arm || 'the arm'} would be`}
@@ -53,7 +55,7 @@ export function FieldPreview({ node, field, value, entries, pointed }: FieldPrev
         onObstacle={() => why && showEditorRefusal('Show in 3D', why)}
         onPress={() => showPreview(isShown ? undefined : { by, kind, name: name ?? '', arm })}
       />
-    </div>
+    </Box>
   )
 
   function obstacle(): string | undefined {
@@ -71,9 +73,11 @@ export function LibraryPreview({ entry }: { readonly entry: EntryName }) {
   const by = `library ${entry.kind} ${entry.name}`
   const isShown = usePreview((s) => s.shown?.by === by)
   return (
-    <button
-      type="button"
-      className="library-info"
+    <ActionIcon
+      variant={isShown ? 'light' : 'subtle'}
+      color={isShown ? 'accent' : 'gray'}
+      size={28}
+      className={rows['aside']}
       aria-pressed={isShown}
       aria-disabled={!hasView || undefined}
       aria-label={`Show ${entry.name} in 3D`}
@@ -81,6 +85,6 @@ export function LibraryPreview({ entry }: { readonly entry: EntryName }) {
       onClick={() => hasView && showPreview(isShown ? undefined : { by, kind: entry.kind, name: entry.name, arm: '' })}
     >
       <IconCube size={15} aria-hidden />
-    </button>
+    </ActionIcon>
   )
 }

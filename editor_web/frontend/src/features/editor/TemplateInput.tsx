@@ -1,6 +1,8 @@
 /** A field for a value that may hold `${…}`: names are offered while one is typed. What is typed counts when the field is left. */
+import { Box, Input, Paper, Text } from '@mantine/core'
 import { useEffect, useId, useRef, useState, type KeyboardEvent } from 'react'
 import { completed, openingAt, type Name } from '../../document/editing/completion'
+import classes from './form.module.css'
 import { useNames } from './useNames'
 
 export interface TemplateInputProps {
@@ -105,7 +107,10 @@ export function TemplateInput(props: TemplateInputProps) {
   const shared = {
     ref: field,
     id,
-    className: `plain-input${isMono ? ' mono' : ''}`,
+    size: 'xs',
+    withAria: false,
+    error: isInvalid,
+    ...(isMono ? { style: { '--input-font-family': 'var(--mantine-font-family-monospace)' } } : {}),
     'aria-label': label,
     'aria-invalid': isInvalid ? true : undefined,
     'aria-describedby': describedBy,
@@ -118,9 +123,11 @@ export function TemplateInput(props: TemplateInputProps) {
     onBlur: () => commit(),
   }
   return (
-    <div className="template-input">
+    <Box pos="relative" flex={1} miw={0}>
       {isLong ? (
-        <textarea
+        <Input
+          component="textarea"
+          multiline
           {...shared}
           rows={Math.min(8, Math.max(2, text.split('\n').length))}
           onChange={(event) => {
@@ -129,7 +136,7 @@ export function TemplateInput(props: TemplateInputProps) {
           }}
         />
       ) : (
-        <input
+        <Input
           {...shared}
           role="combobox"
           aria-expanded={offer !== undefined}
@@ -143,7 +150,17 @@ export function TemplateInput(props: TemplateInputProps) {
         />
       )}
       {offer && (
-        <ul className="offer" role="listbox" id={`${id}-offer`} aria-label={`Choices for ${label}`} onPointerLeave={() => setHovered(-1)}>
+        <Paper
+          component="ul"
+          withBorder
+          shadow="md"
+          p={4}
+          className={classes['offer']}
+          role="listbox"
+          id={`${id}-offer`}
+          aria-label={`Choices for ${label}`}
+          onPointerLeave={() => setHovered(-1)}
+        >
           {offer.items.map((item, index) => (
             <li
               key={item.text}
@@ -157,16 +174,20 @@ export function TemplateInput(props: TemplateInputProps) {
               }}
             >
               <span>{item.text}</span>
-              {item.detail && <span className="quiet">{item.detail}</span>}
+              {item.detail && (
+                <Text span inherit c="dimmed">
+                  {item.detail}
+                </Text>
+              )}
             </li>
           ))}
           {offer.items.length === 0 && (
-            <li className="quiet" role="option" aria-selected={false} aria-disabled>
+            <li role="option" aria-selected={false} aria-disabled>
               No such name
             </li>
           )}
-        </ul>
+        </Paper>
       )}
-    </div>
+    </Box>
   )
 }

@@ -1,12 +1,16 @@
 /** Two versions side by side: what differs in words, on both drawings, and in the text; one alone read-only. */
-import { useEffect, useMemo, useState } from 'react'
+import { Box, Code, Flex, Group, SimpleGrid, Stack, Tabs, Text } from '@mantine/core'
+import { useEffect, useMemo, useState, type ReactNode } from 'react'
 import type { DocumentDiff } from '../../api/types'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange, type Marking } from '../../document/editing/changes'
 import type { EditNode } from '../../document/editing/model'
 import { drawingOf, openWith, type Drawing } from './drawing'
+import { FormWords } from './FormParts'
 import { LineDiff } from './LineDiff'
 import { Picture } from './Picture'
 import { OF_PAGE } from './pictureParts'
+import { PlainList } from './PlainList'
+import classes from './versions.module.css'
 
 /** One version, or the draft. */
 export interface Shown {
@@ -29,76 +33,110 @@ type View = (typeof VIEWS)[number]
 export function VersionView({ before, after, difference }: VersionViewProps) {
   const [view, setView] = useState<View>(before ? 'Changes' : 'This version')
   return (
-    <>
-      <div role="tablist" aria-label="What is shown" className="version-tabs">
+    <Tabs
+      value={view}
+      onChange={(value) => setView((value ?? 'Text') as View)}
+      keepMounted={false}
+      display="flex"
+      mih={0}
+      flex={1}
+      style={{ flexDirection: 'column' }}
+    >
+      <Tabs.List aria-label="What is shown">
         {VIEWS.map((each) => (
-          <button
-            key={each}
-            type="button"
-            role="tab"
-            aria-selected={each === view}
-            className={`command is-quiet${each === view ? ' is-chosen' : ''}`}
-            onClick={() => setView(each)}
-          >
+          <Tabs.Tab key={each} value={each}>
             {each}
-          </button>
+          </Tabs.Tab>
         ))}
-      </div>
-      <div role="tabpanel" aria-label={view} className="version-panel">
-        {view === 'Changes' && before && <Changes before={before} after={after} difference={difference} />}
-        {view === 'Changes' && !before && <p className="quiet">This is the oldest version that is kept.</p>}
-        {view === 'This version' && <Drawn of={after} markings={NO_MARKS} rowPx={ROW_PX} />}
-        {view === 'Text' && <TextDifference before={before} after={after} />}
-      </div>
-    </>
+      </Tabs.List>
+      <Tabs.Panel value="Changes">
+        {before ? (
+          <Changes before={before} after={after} difference={difference} />
+        ) : (
+          <FormWords>This is the oldest version that is kept.</FormWords>
+        )}
+      </Tabs.Panel>
+      <Tabs.Panel value="This version">
+        <Drawn of={after} markings={NO_MARKS} rowPx={ROW_PX} />
+      </Tabs.Panel>
+      <Tabs.Panel value="Text">
+        <TextDifference before={before} after={after} />
+      </Tabs.Panel>
+    </Tabs>
   )
 }
 
 const ROW_PX = 1100
 const HALF_ROW_PX = 640
+const EDGES: Readonly<Record<string, string>> = { added: 'var(--done)', removed: 'var(--failed)' }
 const NO_MARKS: ReadonlyMap<string, Marking> = new Map()
 
 function Changes({ before, after, difference }: { before: Shown; after: Shown; difference: DocumentDiff | undefined }) {
   const changes = useMemo(() => meaningful(difference?.changes ?? []), [difference])
   const marks = useMemo(() => markingsOf(changes, before.root, after.root), [changes, before, after])
   const words = changes.map(wordsOfChange)
-  if (!difference) return <p className="quiet">One of the two cannot be read as a behavior; the tab Text shows how they differ.</p>
+  if (!difference) return <FormWords>One of the two cannot be read as a behavior; the tab Text shows how they differ.</FormWords>
   if (changes.length === 0)
     return (
-      <p className="quiet">
-        {before.text === after.text ? 'The two are the same.' : 'They mean the same; only comments or layout differ.'}
-      </p>
+      <FormWords>{before.text === after.text ? 'The two are the same.' : 'They mean the same; only comments or layout differ.'}</FormWords>
     )
   return (
-    <div className="changes">
-      <ul className="plain-list change-list" aria-label="What differs">
-        {difference.layout_only && <li className="quiet">Only places on the canvas differ.</li>}
-        {words.map((each, index) => (
-          <li key={index} className={`change is-${each.kind}`}>
-            <strong>{each.title}</strong>
-            {each.lines.map((line, at) => (
-              <span key={at} className="quiet">
-                {line}
-              </span>
-            ))}
-          </li>
-        ))}
-      </ul>
-      <div className="two-drawings">
-        <figure>
-          <figcaption>{before.words}</figcaption>
+    <Stack gap="xs">
+      <Box mah="11rem" style={{ overflowY: 'auto' }}>
+        <PlainList label="What differs">
+          {difference.layout_only && <li>Only places on the canvas differ.</li>}
+          {words.map((each, index) => (
+            <Flex
+              key={index}
+              component="li"
+              wrap="wrap"
+              columnGap="sm"
+              px={10}
+              py={3}
+              fz="sm"
+              style={{ borderLeft: `3px solid ${EDGES[each.kind] ?? 'var(--stopped)'}` }}
+            >
+              <strong>{each.title}</strong>
+              {each.lines.map((line, at) => (
+                <Text key={at} span inherit c="dimmed">
+                  {line}
+                </Text>
+              ))}
+            </Flex>
+          ))}
+        </PlainList>
+      </Box>
+      <SimpleGrid cols={{ base: 1, md: 2 }} spacing="xs">
+        <Figure caption={before.words}>
           <Drawn of={before} markings={marks.before} rowPx={HALF_ROW_PX} />
-        </figure>
-        <figure>
-          <figcaption>{after.words}</figcaption>
+        </Figure>
+        <Figure caption={after.words}>
           <Drawn of={after} markings={marks.after} rowPx={HALF_ROW_PX} />
-        </figure>
-      </div>
-      <p className="quiet change-key">
-        <span className="is-added">+ added</span> <span className="is-removed">− removed</span>{' '}
-        <span className="is-changed">≠ changed or moved</span>
-      </p>
-    </div>
+        </Figure>
+      </SimpleGrid>
+      <Group gap="xs" fz="xs">
+        <Text inherit c="var(--done)">
+          + added
+        </Text>
+        <Text inherit c="var(--failed)">
+          − removed
+        </Text>
+        <Text inherit c="var(--stopped)">
+          ≠ changed or moved
+        </Text>
+      </Group>
+    </Stack>
+  )
+}
+
+function Figure({ caption, children }: { caption: string; children: ReactNode }) {
+  return (
+    <Box component="figure" m={0} miw={0}>
+      <Text component="figcaption" size="sm" fw={620} mb={3}>
+        {caption}
+      </Text>
+      {children}
+    </Box>
   )
 }
 
@@ -120,22 +158,28 @@ function Drawn({ of, markings, rowPx }: { of: Shown; markings: ReadonlyMap<strin
       isCurrent = false
     }
   }, [root, outcomes, markings, rowPx])
-  if (!root || problem) return <p className="quiet">{problem || 'This text cannot be read as a behavior.'}</p>
+  if (!root || problem) return <FormWords>{problem || 'This text cannot be read as a behavior.'}</FormWords>
   return (
-    <div className="drawing" role="region" tabIndex={0} aria-label={`Drawing of the version ${words}`}>
+    <div
+      className={classes['framed']}
+      style={{ maxHeight: '30rem' }}
+      role="region"
+      tabIndex={0}
+      aria-label={`Drawing of the version ${words}`}
+    >
       {drawing && <Picture drawn={drawing} title={words} palette={OF_PAGE} markings={markings} />}
     </div>
   )
 }
 
 function TextDifference({ before, after }: { before: Shown | undefined; after: Shown }) {
-  if (!before) return <pre className="version-text">{after.text}</pre>
+  if (!before) return <Code block>{after.text}</Code>
   return (
     <>
-      <div className="conflict-heads">
+      <SimpleGrid cols={2} fz="sm" mb={4}>
         <strong>{before.words}</strong>
         <strong>{after.words}</strong>
-      </div>
+      </SimpleGrid>
       <LineDiff label="Differences, the older one on the left" left={before.text} right={after.text} />
     </>
   )

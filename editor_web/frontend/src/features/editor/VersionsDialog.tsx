@@ -1,6 +1,7 @@
 /** The versions of a behavior: when and by what each was written, what differs between two, one of them restored. */
+import { Button, Group, Input, Loader, NativeSelect, Space, Stack, Text, UnstyledButton } from '@mantine/core'
 import { queryOptions, skipToken } from '@tanstack/react-query'
-import { useMemo, useState } from 'react'
+import { useId, useMemo, useState } from 'react'
 import { useLive } from '../../api/live'
 import { useAnswer, type Answer } from '../../api/queryClient'
 import { queryKeys } from '../../api/queryKeys'
@@ -11,7 +12,10 @@ import type { EditNode } from '../../document/editing/model'
 import { wallTime } from '../../document/time'
 import { takeText } from './apply'
 import { closeFileDialog, useFileDialog } from './fileDialogs'
+import { PlainList } from './PlainList'
+import rows from './row.module.css'
 import { draftOf, editor, isDirty, rootOf, showEditorNotice, useEditor } from './store'
+import classes from './versions.module.css'
 import { VersionView, type Shown } from './VersionView'
 
 /** The text that is being edited, among the versions. */
@@ -30,6 +34,7 @@ export function VersionsDialog() {
 function Versions() {
   const id = useEditor((s) => s.id)
   const dirty = useEditor(isDirty)
+  const choice = useId()
   const mayEdit = useLive((s) => s.role === 'operator')
   const { value: versions, problem: unread } = useAnswer(relationQueries.versions(id))
   const [startsWithDraft] = useState(dirty)
@@ -53,23 +58,23 @@ function Versions() {
 
   if (problem) {
     return (
-      <p className="is-failed" role="alert">
+      <Text size="sm" c="var(--failed)" role="alert">
         {problem}
-      </p>
+      </Text>
     )
   }
-  if (!versions) return <div className="page-wait" role="status" aria-label="Loading" />
+  if (!versions) return <Loader size="sm" m="auto" role="status" aria-label="Loading" />
   return (
-    <div className="versions">
-      <div className="version-list">
-        <ul className="plain-list" aria-label="Versions, newest first">
+    <div className={`${classes['versions']} ${classes['wide']}`}>
+      <div>
+        <PlainList label="Versions, newest first">
           {order.map((hash) => {
             const version = versions.find((each) => each.hash === hash)
             return (
               <li key={hash}>
-                <button
-                  type="button"
-                  className="version"
+                <UnstyledButton
+                  className={rows['row']}
+                  style={{ flexDirection: 'column', gap: 0 }}
                   aria-current={hash === shown ? 'true' : undefined}
                   onClick={() => {
                     setShown(hash)
@@ -77,50 +82,49 @@ function Versions() {
                   }}
                 >
                   <strong>{version ? wallTime(version.saved_at) : 'Draft, not saved'}</strong>
-                  <span className="quiet">
+                  <Text span size="xs" c="dimmed">
                     {version && (version.by === 'editor' ? 'saved here' : 'found in the file')}
                     {version?.current && ' · on disk now'}
-                  </span>
-                </button>
+                  </Text>
+                </UnstyledButton>
               </li>
             )
           })}
-        </ul>
+        </PlainList>
       </div>
-      <div className="version-body">
-        <div className="version-head">
-          <label>
-            Compare with{' '}
-            <select className="plain-input" value={before ?? ''} onChange={(event) => setAgainst(event.currentTarget.value || undefined)}>
-              {before === undefined && <option value="">nothing older</option>}
-              {order
-                .filter((hash) => hash !== shown)
-                .map((hash) => (
-                  <option key={hash} value={hash}>
-                    {optionWords(versions, hash)}
-                  </option>
-                ))}
-            </select>
-          </label>
-          <span className="spacer" />
+      <Stack gap={8}>
+        <Group gap="xs" fz="sm">
+          <Input.Label htmlFor={choice} size="sm">
+            Compare with
+          </Input.Label>
+          <NativeSelect
+            id={choice}
+            size="xs"
+            value={before ?? ''}
+            data={[
+              ...(before === undefined ? [{ value: '', label: 'nothing older' }] : []),
+              ...order.filter((hash) => hash !== shown).map((hash) => ({ value: hash, label: optionWords(versions, hash) })),
+            ]}
+            onChange={(event) => setAgainst(event.currentTarget.value || undefined)}
+          />
+          <Space flex={1} />
           {mayEdit && shown !== DRAFT && (
-            <button
-              type="button"
-              className="command is-strong"
+            <Button
+              size="compact-sm"
               disabled={!compared || compared.after.text === draftOf(editor()).text}
               title="Takes its text into the draft; undo takes it back, save writes it"
               onClick={() => void restore()}
             >
               Restore this version
-            </button>
+            </Button>
           )}
-        </div>
+        </Group>
         {compared ? (
           <VersionView key={`${before} ${shown}`} {...compared} />
         ) : (
-          <div className="page-wait" role="status" aria-label="Loading" />
+          <Loader size="sm" m="auto" role="status" aria-label="Loading" />
         )}
-      </div>
+      </Stack>
     </div>
   )
 }

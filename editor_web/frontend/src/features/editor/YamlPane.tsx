@@ -17,6 +17,7 @@ import {
   type DecorationSet,
 } from '@codemirror/view'
 import { tags } from '@lezer/highlight'
+import { Box } from '@mantine/core'
 import { useEffect, useRef } from 'react'
 import type { FindingView, FixesBody } from '../../api/types'
 import { problemsOf } from '../../document/editing/findings'
@@ -51,12 +52,39 @@ const nodeLines = StateField.define<DecorationSet>({
   provide: (field) => EditorView.decorations.from(field),
 })
 
+/** What the page's colours say of the text, and of what CodeMirror shows beside it. */
+const FRAME = EditorView.theme({
+  '&': { height: '100%', background: 'var(--surface)', color: 'var(--text)', fontSize: '0.8rem' },
+  '&.cm-focused': { outline: 'none' },
+  '.cm-scroller': { fontFamily: 'var(--mantine-font-family-monospace)', lineHeight: '1.5' },
+  '.cm-gutters': { border: 'none', borderRight: '1px solid var(--line)', background: 'var(--surface)', color: 'var(--quiet)' },
+  '.cm-content': { caretColor: 'var(--text)' },
+  '.cm-cursor': { borderLeftColor: 'var(--text)' },
+  '.cm-activeLine, .cm-activeLineGutter': { background: 'color-mix(in srgb, var(--ground) 60%, transparent)' },
+  '&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground': {
+    background: 'color-mix(in srgb, var(--accent) 26%, transparent)',
+  },
+  '.cm-node-line': { background: 'var(--accent-soft)' },
+  '.cm-tooltip': {
+    overflow: 'hidden',
+    border: '1px solid var(--line-strong)',
+    borderRadius: '8px',
+    background: 'var(--surface)',
+    color: 'var(--text)',
+  },
+  '.cm-tooltip.cm-tooltip-autocomplete > ul > li': { padding: '3px 8px', fontFamily: 'var(--mantine-font-family)' },
+  '.cm-tooltip-autocomplete ul li[aria-selected]': { background: 'var(--accent-soft)', color: 'var(--text)' },
+  '.cm-completionDetail': { color: 'var(--quiet)', fontStyle: 'normal' },
+  '.cm-diagnostic': { fontFamily: 'var(--mantine-font-family)', fontSize: '0.82rem' },
+  '.cm-panels': { borderColor: 'var(--line)', background: 'var(--ground)', color: 'var(--text)' },
+})
+
 const LOOK = HighlightStyle.define([
-  { tag: [tags.propertyName, tags.definition(tags.propertyName)], class: 'tok-key' },
-  { tag: [tags.string, tags.content], class: 'tok-text' },
-  { tag: [tags.number, tags.bool, tags.null], class: 'tok-number' },
-  { tag: tags.comment, class: 'tok-comment' },
-  { tag: [tags.punctuation, tags.separator, tags.brace, tags.squareBracket], class: 'tok-mark' },
+  { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: 'var(--accent)' },
+  { tag: [tags.string, tags.content], color: 'var(--done)' },
+  { tag: [tags.number, tags.bool, tags.null], color: 'var(--stopped)' },
+  { tag: tags.comment, color: 'var(--quiet)' },
+  { tag: [tags.punctuation, tags.separator, tags.brace, tags.squareBracket], color: 'var(--quiet)' },
 ])
 
 function newView(parent: HTMLElement): EditorView {
@@ -78,6 +106,7 @@ function newView(parent: HTMLElement): EditorView {
         highlightSelectionMatches(),
         search({ top: true }),
         nodeLines,
+        FRAME,
         yaml(),
         syntaxHighlighting(LOOK),
         autocompletion({ override: [completeText], activateOnTyping: true }),
@@ -184,9 +213,5 @@ export function YamlPane() {
     })
   }, [place])
 
-  return (
-    <section className="text-pane" aria-label="Text">
-      <div className="text-host" ref={host} />
-    </section>
-  )
+  return <Box component="section" h="100%" mih={0} bg="var(--surface)" style={{ overflow: 'hidden' }} aria-label="Text" ref={host} />
 }

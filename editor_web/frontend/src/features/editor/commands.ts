@@ -316,9 +316,9 @@ function goIn(): void {
 function focusInspector(): void {
   setEditor({ tab: 'node' })
   requestAnimationFrame(() => {
-    const form = document.querySelector('.inspector .node-form')
+    const form = document.querySelector('[data-inspector] [data-form]')
     const field =
-      form?.querySelector<HTMLElement>('.edit-fields input, .edit-fields select') ??
+      form?.querySelector<HTMLElement>('[data-parameters] :is(input, select)') ??
       form?.querySelector<HTMLElement>('input, select, textarea')
     field?.focus()
   })

@@ -70,7 +70,7 @@ export function goToUse(path: string, field: string): void {
 /** The form is drawn a moment after its node is chosen; the canvas takes the keyboard before that. */
 function focusField(label: string, tries = 30): void {
   requestAnimationFrame(() => {
-    const field = document.querySelector<HTMLElement>(`.inspector :is(input, textarea)[aria-label="${CSS.escape(label)}"]`)
+    const field = document.querySelector<HTMLElement>(`[data-inspector] :is(input, textarea)[aria-label="${CSS.escape(label)}"]`)
     if (!field) {
       if (tries > 0) focusField(label, tries - 1)
       return

@@ -4,7 +4,6 @@ import { edgeId, outcomeId } from '../../document/edgeId'
 import { rulesId, type Arrangement } from '../../document/editing/arrange'
 import { entryY, PILL_HEIGHT, pillsOf, portY } from '../../document/editing/measure'
 import {
-  isFailure,
   isForeign,
   isFrame,
   isMachine,
@@ -233,7 +232,6 @@ function transitionEdges(machine: EditNode, { arrangement, declared }: DrawnInpu
         sourceHandle: t.outcome,
         targetHandle: IN,
         data: { points: arrangement.routes.get(id), outcome: t.outcome, machine: machine.path, isQuiet },
-        className: isFailure(t.outcome) ? 'is-failure' : '',
         ariaLabel: `${t.outcome} of ${t.source} leads to ${t.target}`,
         // From its port an arrow is drawn anew; only its head is taken elsewhere.
         reconnectable: 'target' as const,

@@ -60,7 +60,7 @@ function isPlain(event: KeyboardEvent): boolean {
 }
 
 function isOnCanvas(target: HTMLElement | undefined): boolean {
-  return !target || target === document.body || target.closest('.edit-canvas') !== null || target.tagName === 'MAIN'
+  return !target || target === document.body || target.closest('[data-canvas]') !== null || target.tagName === 'MAIN'
 }
 
 function isWriting(target: HTMLElement): boolean {

@@ -46,6 +46,6 @@ function boundsOf(arrangement: Drawn): Box | undefined {
 
 /** All that is drawn now, in the pane it is drawn in. */
 export function wholeCanvas(): Viewport {
-  const pane = document.querySelector('.edit-canvas')?.getBoundingClientRect()
+  const pane = document.querySelector('[data-canvas]')?.getBoundingClientRect()
   return viewportFor(canvasBoxes(), { width: pane?.width ?? 1, height: pane?.height ?? 1 })
 }

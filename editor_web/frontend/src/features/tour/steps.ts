@@ -22,9 +22,9 @@ export interface Step {
   readonly isDone: (facts: Facts) => boolean
 }
 
-const NODE = (state: string) => `.edit-canvas .react-flow__node[aria-label*="runs ${state};"]`
-const FIELD = (name: string) => `.inspector [aria-label="${name}"]`
-const TABS = (name: string) => `.editor [role="tab"][id$="-tab-${name}"]:not([aria-selected="true"])`
+const NODE = (state: string) => `[data-canvas] .react-flow__node[aria-label*="runs ${state};"]`
+const FIELD = (name: string) => `[data-inspector] [aria-label="${name}"]`
+const TABS = (name: string) => `[data-editor] [role="tab"][id$="-tab-${name}"]:not([aria-selected="true"])`
 
 export const STEPS: readonly Step[] = [
   {
@@ -48,8 +48,8 @@ export const STEPS: readonly Step[] = [
     words: 'A state is one thing to be done. Drag Wait from the library onto the canvas, or click it.',
     keys: 'Press A, write wait, press Enter.',
     page: 'edit',
-    targets: ['.library-add[aria-label="Add flow.Wait"]', TABS('library'), '.edit-canvas'],
-    clear: '.edit-canvas',
+    targets: ['[aria-label="Add flow.Wait"]', TABS('library'), '[data-canvas]'],
+    clear: '[data-canvas]',
     isDone: () => isThere(NODE('flow.Wait')),
   },
   {
@@ -67,8 +67,8 @@ export const STEPS: readonly Step[] = [
       'Click Log in the library: it writes a line into the log of the run. While Wait is selected, its outcome done is led to the new state by itself.',
     keys: 'Select the state, press A, write flow.log, press Enter.',
     page: 'edit',
-    targets: ['.library-add[aria-label="Add flow.Log"]', TABS('library'), '.edit-canvas'],
-    clear: '.edit-canvas',
+    targets: ['[aria-label="Add flow.Log"]', TABS('library'), '[data-canvas]'],
+    clear: '[data-canvas]',
     isDone: () => isThere(NODE('flow.Log')) && isThere(NODE('flow.Wait')),
   },
   {
@@ -84,17 +84,17 @@ export const STEPS: readonly Step[] = [
     words: 'Every outcome needs a target. Drag from the dot beside done to the pill finished: there the behavior ends.',
     keys: 'Select the state, press C, choose the outcome with Enter, write finished, press Enter.',
     page: 'edit',
-    targets: ['.edit-canvas .transition-row.is-loose', TABS('canvas'), '.problem-count'],
-    clear: '.edit-canvas',
+    targets: ['[data-canvas] [data-outcome][data-loose]', TABS('canvas'), '[data-problem-count]'],
+    clear: '[data-canvas]',
     isDone: () =>
-      isSettled() && countOf('.edit-canvas .transition-row') > 1 && !isThere('.edit-canvas .transition-row.is-loose') && errors() === 0,
+      isSettled() && countOf('[data-canvas] [data-outcome]') > 1 && !isThere('[data-canvas] [data-outcome][data-loose]') && errors() === 0,
   },
   {
     title: 'Check, save, and go to the run page',
     words: 'Run saves the behavior, checks it, and opens the page on which it runs.',
     keys: 'Press Ctrl and Enter.',
     page: 'edit',
-    targets: ['.edit-head [aria-keyshortcuts="Control+Enter"]'],
+    targets: ['[data-editor-head] [aria-keyshortcuts="Control+Enter"]'],
     isDone: ({ page }) => page === 'behavior' || page === 'run',
   },
   {
@@ -149,15 +149,15 @@ function countOf(selector: string): number {
 function isFilled(name: string): boolean {
   const field = document.querySelector<HTMLInputElement>(FIELD(name))
   if (!isSettled()) return false
-  if (!field) return errors() <= countOf('.edit-canvas .transition-row.is-loose')
-  return field.value.trim() !== '' && !field.closest('.edit-field')?.classList.contains('has-problem')
+  if (!field) return errors() <= countOf('[data-canvas] [data-outcome][data-loose]')
+  return field.value.trim() !== '' && !field.closest('[data-field]')?.hasAttribute('data-problem')
 }
 
 function isSettled(): boolean {
-  return isThere('.editor[aria-busy="false"]')
+  return isThere('[data-editor][aria-busy="false"]')
 }
 
 /** How many errors the editor's head counts. */
 function errors(): number {
-  return Number(/(\d+) error/.exec(document.querySelector('.problem-count')?.textContent ?? '')?.[1] ?? 0)
+  return Number(/(\d+) error/.exec(document.querySelector('[data-problem-count]')?.textContent ?? '')?.[1] ?? 0)
 }
