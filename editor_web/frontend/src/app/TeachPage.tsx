@@ -1,5 +1,5 @@
 /** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
-import { Box, VisuallyHidden } from '@mantine/core'
+import { Box, Flex, VisuallyHidden } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { connectTeach, endPreview, useTeach } from '../api/teaching'
@@ -20,7 +20,6 @@ import { CaptureList } from '../features/teaching/CaptureList'
 import { EntryList } from '../features/teaching/EntryList'
 import { JogPanel } from '../features/teaching/JogPanel'
 import { LeadPanel } from '../features/teaching/LeadPanel'
-import '../features/teaching/styles/index.css'
 import { TabBody } from '../features/teaching/TabBody'
 import { TriggerTable } from '../features/teaching/TriggerTable'
 import { useButtons } from '../features/teaching/useButtons'
@@ -41,7 +40,6 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
     <Panel
       title="Cell"
       hasIcons
-      className="teach-cell"
       tools={
         <>
           <Box flex={1} />
@@ -56,7 +54,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
     </Panel>
   )
   return (
-    <div className="teach">
+    <Flex direction="column" flex={1} mih={0} style={{ overflow: isNarrow ? 'auto' : undefined }}>
       <VisuallyHidden component="h1">Teach</VisuallyHidden>
       {arms === undefined ? (
         <div role="status" aria-label="Loading" />
@@ -83,7 +81,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
           )}
         </>
       )}
-    </div>
+    </Flex>
   )
 }
 

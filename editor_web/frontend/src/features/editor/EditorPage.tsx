@@ -3,13 +3,14 @@ import { lookup } from '../../document/dict'
 import { Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
 import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { Group, Panel as Pane } from 'react-resizable-panels'
 import { offerCommands } from '../../api/search'
 import { useLive } from '../../api/live'
 import { askStartHere, type StartHere } from '../../api/startHere'
 import { Empty } from '../../components/Empty'
 import { lazyView } from '../../components/lazyView'
 import { Loading } from '../../components/Loading'
+import { Splitter } from '../../components/Splitter'
 import { ViewBoundary } from '../../components/ViewBoundary'
 import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
@@ -192,11 +193,11 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
           <Tabs.Panel value="text">{text}</Tabs.Panel>
         </Tabs>
       ) : (
-        <Group orientation="horizontal" className={classes['panes'] ?? ''}>
+        <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
           <Pane id="library" defaultSize="17%" minSize="12%" maxSize="34%">
             {hasFlow ? flow : library}
           </Pane>
-          <Separator className={classes['splitter'] ?? ''} aria-label="Width of the library" />
+          <Splitter label="Width of the library" />
           <Pane id="middle" defaultSize="57%" minSize="30%" style={{ position: 'relative' }}>
             <Group orientation="vertical">
               <Pane id="canvas" defaultSize={isTextShown ? '56%' : '100%'} minSize="20%">
@@ -204,7 +205,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
               </Pane>
               {isTextShown && (
                 <>
-                  <Separator className={classes['splitter'] ?? ''} data-flat aria-label="Height of the text" />
+                  <Splitter label="Height of the text" isFlat />
                   <Pane id="text" defaultSize="44%" minSize="15%">
                     {text}
                   </Pane>
@@ -213,7 +214,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
             </Group>
             {preview}
           </Pane>
-          <Separator className={classes['splitter'] ?? ''} aria-label="Width of the form" />
+          <Splitter label="Width of the form" />
           <Pane id="inspector" defaultSize="26%" minSize="20%" maxSize="50%">
             {form}
           </Pane>

@@ -1,5 +1,6 @@
 /** The form of what is chosen: the node, the behavior itself, and the problems of both. */
-import { Badge, Tabs } from '@mantine/core'
+import { Tabs } from '@mantine/core'
+import { TabCount } from '../../components/TabCount'
 import { problemsOf } from '../../document/editing/findings'
 import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { ArrowForm } from './ArrowForm'
@@ -27,11 +28,7 @@ export function Inspector() {
         <Tabs.Tab value="document">Behavior</Tabs.Tab>
         <Tabs.Tab value="problems">
           Problems
-          {problems > 0 && (
-            <Badge size="sm" ml={6} px={6} variant="light" c="var(--stopped)" bg="var(--stopped-soft)">
-              {problems}
-            </Badge>
-          )}
+          {problems > 0 && <TabCount count={problems} />}
         </Tabs.Tab>
       </Tabs.List>
       <Tabs.Panel value="node">{arrow ? <ArrowForm arrow={arrow} /> : <FormOf />}</Tabs.Panel>
