@@ -77,7 +77,9 @@ class TopicBus:
     async def call(self, address: str, request: object) -> str:
         raise BusError("no such service", where=address)
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+    async def perform(
+        self, address: str, goal: object, *, on_accepted: Callable[[], None] | None = None
+    ) -> GoalEnd[Any]:
         raise BusError("no such service", where=address)
 
 
