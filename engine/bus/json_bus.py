@@ -38,11 +38,12 @@ class JsonBus(Protocol):
         ...
 
     async def perform(
-        self, address: str, goal: object, *, on_accepted: Callable[[], None] | None = None
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
     ) -> GoalEnd[Any]:
         """Send a goal and wait for its end; on cancellation, cancel the goal and wait for its end first.
 
-        `on_accepted` is called once the goal is accepted; never by a bus behind a server, which tells of the end only.
+        `on_sent` receives the goal once it is sent; it is not called by a bus behind a server, which tells of the end
+        only.
         """
         ...
 
@@ -101,7 +102,7 @@ class LocalJsonBus:
         return _text(await self._bus.call(typed, to=namespace, holder=CLI_HOLDER))
 
     async def perform(
-        self, address: str, goal: object, *, on_accepted: Callable[[], None] | None = None
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
     ) -> GoalEnd[Any]:
         """Send a goal and wait for its end.
 
@@ -109,8 +110,8 @@ class LocalJsonBus:
             BusError: no such action, a service, an invalid goal, or a resource held by a run.
         """
         handle = self.send(address, goal)
-        if on_accepted is not None:
-            handle.on_accepted(on_accepted)
+        if on_sent is not None:
+            on_sent(handle)
         return await self.ended(handle)
 
     def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:

@@ -10,6 +10,7 @@ from typing import Any, Self
 import httpx
 import msgspec
 
+from engine.bus.action import GoalHandle
 from engine.bus.bus import BusEntry
 from engine.errors import BusError, Cause
 from engine.host.state_folder_names import SERVER_FILE
@@ -120,7 +121,7 @@ class RemoteJsonBus:
         return verify_response(await self._client.post("/api/v1/bus/call", json=body)).text
 
     async def perform(
-        self, address: str, goal: object, *, on_accepted: Callable[[], None] | None = None
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
     ) -> GoalEnd[Any]:
         """Send a goal and wait for its end; the server cancels the goal when the connection is lost."""
         body = {"address": address, "request": goal}

@@ -35,7 +35,7 @@ _STILL: Vector3 = (0.0, 0.0, 0.0)
 PressTime = Annotated[
     float, msgspec.Meta(ge=0.0, le=1.0, description="Shortest time of the press that this command begins, in seconds")
 ]
-MOST_WAIT_S = 0.5
+MOST_WAIT_S = 1.0
 """A press that was released before its path was checked is dropped after so long."""
 
 
@@ -99,25 +99,17 @@ class PrepareJog(Service[JogReady], frozen=True, kw_only=True):
 
 
 class JointJogFeedback(Message, frozen=True, kw_only=True):
-    """The present configuration, radians, and the reason why the motion is limited; empty when it is not.
-
-    `idle` while no velocity is commanded and no press is left.
-    """
+    """The present configuration, radians, and the reason why the motion is limited; empty when it is not."""
 
     joints: tuple[float, ...]
     held_by: str = ""
-    idle: bool = False
 
 
 class ToolJogFeedback(Message, frozen=True, kw_only=True):
-    """The present pose of the tool centre point, and the reason why the motion is limited; empty when it is not.
-
-    `idle` while no velocity is commanded and no press is left.
-    """
+    """The present pose of the tool centre point, and the reason why the motion is limited; empty when it is not."""
 
     pose: Pose
     held_by: str = ""
-    idle: bool = False
 
 
 class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_only=True):

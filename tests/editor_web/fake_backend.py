@@ -14,7 +14,7 @@ from typing import Any, cast
 from msgspec.structs import replace
 
 from engine.archive import Archive
-from engine.bus import SkillBus
+from engine.bus import GoalHandle, SkillBus
 from engine.bus.bus import BusEntry
 from engine.bus.json_bus import JsonBus
 from engine.cell import CellConnection, OpenCell
@@ -78,7 +78,7 @@ class TopicBus:
         raise BusError("no such service", where=address)
 
     async def perform(
-        self, address: str, goal: object, *, on_accepted: Callable[[], None] | None = None
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
     ) -> GoalEnd[Any]:
         raise BusError("no such service", where=address)
 

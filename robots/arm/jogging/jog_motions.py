@@ -115,8 +115,7 @@ class JogMotions:
         )
 
         def publish_feedback() -> None:
-            held_by = guard.held_by if guard else ""
-            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=held_by, idle=run.idle))
+            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
 
         ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
@@ -138,8 +137,7 @@ class JogMotions:
         run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
 
         def publish_feedback() -> None:
-            held_by = guard.held_by if guard else ""
-            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=held_by, idle=run.idle))
+            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
 
         ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)

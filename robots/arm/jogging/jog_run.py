@@ -21,6 +21,8 @@ from robots.arm.jogging.press_queue import PressQueue, Row
 from robots.port import MotionStream
 from robots.supervise_goal import FEEDBACK_S
 
+# Rounding must not let a timer of virtual time wait for nothing forever.
+_SOONEST_S = 0.001
 _REPEATED_S = 4.0 * FEEDBACK_S
 # Largest plausible velocity, in m/s or rad/s: beyond all arms, and products of larger ones may overflow.
 _MAX_PLAUSIBLE = 1e6
@@ -84,15 +86,10 @@ class JogRun:
         self.look()
         if self._presses.current is not None:
             self._send()
-        self._handle.gives_way = self._gives_way and self.idle
+        self._handle.gives_way = self._gives_way and self._presses.current is None
         if self._guard is not None:
             self._guard.watch_ahead(self._send_again)
         return stream
-
-    @property
-    def idle(self) -> bool:
-        """True while no velocity is commanded and no press is left."""
-        return self._presses.current is None
 
     @property
     def frame(self) -> Axes | None:
@@ -173,7 +170,7 @@ class JogRun:
             self._timer.cancel()
         due_s = self._presses.due_s()
         self._timer = (
-            asyncio.get_running_loop().call_later(max(0.0, due_s - now_s), self._send_again)
+            asyncio.get_running_loop().call_later(max(_SOONEST_S, due_s - now_s), self._send_again)
             if due_s is not None and not self._velocity
             else None
         )
