@@ -85,7 +85,7 @@ class JogReadiness(msgspec.Struct, frozen=True, kw_only=True, tag="ready", tag_f
 
 
 class JogBlockFrame(JogBlock, frozen=True, kw_only=True, tag="block", tag_field="k"):
-    """What the arm that this page jogs stands before, and which directions lead out; both names are empty for nothing."""
+    """What the arm that this page jogs stands before, and which directions lead out; no names for nothing."""
 
 
 class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag_field="k"):

@@ -57,7 +57,7 @@ class JogGuard:
         rule: Margin, and the objects that may be touched.
         to_joints: Maps commanded velocities to joint velocities.
         ways_out: Finds the directions that lead away from what the arm stands before.
-        tell: Receives what the arm stands before, and that it goes free again.
+        tell: Receives what the arm stands before, and after every check that finds nothing that it goes free.
     """
 
     def __init__(
@@ -150,10 +150,10 @@ class JogGuard:
                     await self._recheck.wait()
 
     async def _tell_block(self, pair: NamePair | None, *, is_free: bool) -> None:
-        """Publish what the arm stands before, once at a place, and that it goes free, once."""
+        """Tell what the arm stands before, once at a place, or that it goes free."""
         name = self._runner.name
         if pair is None:
-            if is_free and self._told is not None:
+            if is_free:
                 self._told = None
                 self._tell(JogBlock(robot=name))
             return

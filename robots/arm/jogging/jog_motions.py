@@ -160,7 +160,7 @@ class JogMotions:
         if self._hiding is not None:
             self._hiding.cancel()
             self._hiding = None
-        if self._blocks is not None:
+        if self._blocks is not None and block != (self._blocks.latest or JogBlock(robot=block.robot)):
             self._blocks.publish(block)
 
     def _forget_block(self) -> None:
