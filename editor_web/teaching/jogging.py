@@ -42,14 +42,14 @@ class _Press:
         velocity: The latest one; empty before the first.
         heard_s: When it, or the release, came.
         is_up: Whether it is released.
-        is_told: Whether the arm knows of it.
+        is_published: Whether the arm knows of it.
     """
 
     jog: StartJog
     velocity: tuple[float, ...] = ()
     heard_s: float = 0.0
     is_up: bool = False
-    is_told: bool = False
+    is_published: bool = False
 
 
 class Jogger:
@@ -74,7 +74,7 @@ class Jogger:
         self._goal: GoalHandle[Any, Any] | None = None
         self._is_accepted = False
         self._task: asyncio.Task[None] | None = None
-        self._telling: asyncio.Task[None] | None = None
+        self._publishing: asyncio.Task[None] | None = None
         self._closing: asyncio.TimerHandle | None = None
 
     @property
@@ -116,7 +116,7 @@ class Jogger:
             await self.rest()
             return
         press.velocity, press.heard_s = velocity, self._loop.time()
-        await self._tell()
+        await self._publish_presses()
 
     async def release(self) -> None:
         """End the press: the arm comes to rest once it has moved, and the jog stays open for the next press."""
@@ -124,7 +124,7 @@ class Jogger:
         if press is None or press.is_up:
             return
         press.is_up, press.heard_s = True, self._loop.time()
-        await self._tell()
+        await self._publish_presses()
         self._send(JogStatus(arm=""))
         self._keep_open()
 
@@ -149,14 +149,14 @@ class Jogger:
             while self._presses and now_s - self._presses[0].heard_s > MOST_WAIT_S:
                 self._presses.popleft()
 
-    async def _tell(self) -> None:
+    async def _publish_presses(self) -> None:
         """Tell the arm of the presses that it does not know yet, in their order, once it takes commands."""
         if not self._is_accepted:
             return
         try:
             while self._presses:
                 press = self._presses[0]
-                await self._tell_press(press)
+                await self._publish_press(press)
                 if not press.is_up:
                     return
                 if self._presses and self._presses[0] is press:
@@ -165,18 +165,18 @@ class Jogger:
             self._refuse(error.message, error.hint or "")
             await self.rest()
 
-    async def _tell_press(self, press: _Press) -> None:
+    async def _publish_press(self, press: _Press) -> None:
         silent_s = self._loop.time() - press.heard_s
         if not press.velocity or silent_s > (MOST_WAIT_S if press.is_up else WATCHDOG_S):
             return
         topic = f"{press.jog.arm}/jog"
-        if not (press.is_up and press.is_told):
+        if not (press.is_up and press.is_published):
             command: dict[str, object] = {"velocity": press.velocity}
             if press.jog.space == "tool":
                 command["frame"] = press.jog.frame
-            if not press.is_told:
+            if not press.is_published:
                 command["least_s"] = LEAST_PRESS_S
-            press.is_told = True
+            press.is_published = True
             await self._bus.publish(topic, command)
         if press.is_up:
             await self._bus.publish(topic, {"velocity": [0.0] * len(press.velocity)})
@@ -187,14 +187,14 @@ class Jogger:
         if goal is None or goal.finished:
             return
         is_idle = asyncio.Event()
-        goal.on_feedback(lambda _: is_idle.set() if goal.gives_way and not self._presses else None)
+        goal.on_feedback(lambda _: is_idle.set() if goal.replaceable and not self._presses else None)
         with suppress(TimeoutError, FlexcellError):
             async with asyncio.timeout(MOST_WAIT_S + LEAST_PRESS_S):
                 await goal.accepted()
                 await is_idle.wait()
 
     async def _perform(self, jog: StartJog) -> None:
-        goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S, "gives_way": True}
+        goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S, "replaceable": True}
         if jog.space == "tool":
             goal["frame"] = jog.frame
         try:
@@ -213,7 +213,7 @@ class Jogger:
 
     def _on_accepted(self) -> None:
         self._is_accepted = True
-        self._telling = asyncio.create_task(self._tell(), name="tell the first presses")
+        self._publishing = asyncio.create_task(self._publish_presses(), name="tell the first presses")
 
     def _keep_open(self) -> None:
         """Let the jog stay open for `OPEN_S` from now."""

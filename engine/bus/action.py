@@ -36,9 +36,9 @@ class ActiveGoal(Generic[F]):
         self.status = GoalStatus.PENDING
         self.started = False
         self.cancel_requested = False
-        self.gives_way = False
+        self.replaceable = False
         """Whether it is idle now and ends for the next goal; the handler sets this, see `SkillBus.send_goal`."""
-        self.has_given_way = False
+        self.was_replaced = False
         self.ended = asyncio.Event()
         self.accepted = asyncio.Event()
         self.accept_listeners: list[Callable[[], None]] = []
@@ -117,9 +117,9 @@ class GoalHandle(Generic[R, F]):
         return self._goal.status
 
     @property
-    def gives_way(self) -> bool:
+    def replaceable(self) -> bool:
         """True while the goal is idle and would end for another one."""
-        return self._goal.gives_way and not self._goal.has_given_way
+        return self._goal.replaceable and not self._goal.was_replaced
 
     @property
     def feedback(self) -> F | None:
@@ -166,9 +166,9 @@ class GoalHandle(Generic[R, F]):
         elif self._goal.started:
             self._task.cancel()
 
-    def give_way(self) -> None:
+    def replace(self) -> None:
         """Request a stop because another goal takes the place of this idle one."""
-        self._goal.has_given_way = True
+        self._goal.was_replaced = True
         self.cancel()
 
     async def hold(self) -> None:

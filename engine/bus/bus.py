@@ -164,7 +164,7 @@ class SkillBus:
         """Serve the action `skill` at `<namespace>/<skill_name>`.
 
         Actions that share `exclusive` execute one goal at a time between them; a second goal is rejected,
-        and the message names the active one. An idle goal, see `ActiveGoal.gives_way`, ends for it instead.
+        and the message names the active one. An idle goal, see `ActiveGoal.replaceable`, ends for it instead.
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
@@ -229,7 +229,7 @@ class SkillBus:
     async def _serve(
         self, server: _ActionServer, goal: Action[Any, Any], active: ActiveGoal[Any], to: str
     ) -> GoalEnd[Any]:
-        while (other := self._running.get(server.exclusive)) is not None and other.has_given_way:
+        while (other := self._running.get(server.exclusive)) is not None and other.was_replaced:
             await other.ended.wait()
         try:
             if other is not None:
@@ -240,7 +240,7 @@ class SkillBus:
             if self._running.get(server.exclusive) is active:
                 del self._running[server.exclusive]
             active.ended.set()
-            if not active.has_given_way:
+            if not active.was_replaced:
                 self.leases.release((to,), active.holder)
             if active.holder.run == ANONYMOUS_HOLDER.run and len(self.goals(ANONYMOUS_HOLDER.run)) <= 1:
                 self.leases.release_run(ANONYMOUS_HOLDER.run)
@@ -252,9 +252,9 @@ class SkillBus:
             is_running = running is not None and (running.id, running.address) == (handle.id, handle.address)
             # What a run has leased stays with it until it ends.
             is_foreign = handle.holder_run != holder.run and not handle.holder.branch
-            if not handle.gives_way or not (is_running or (is_foreign and _root_of(handle.address) == root)):
+            if not handle.replaceable or not (is_running or (is_foreign and _root_of(handle.address) == root)):
                 continue
-            handle.give_way()
+            handle.replace()
             self.leases.release((handle.address.rpartition("/")[0],), handle.holder)
             if is_foreign and len(self.goals(handle.holder_run)) == 1:
                 self.leases.release_run(handle.holder_run)

@@ -27,7 +27,7 @@ WatchdogTime = Annotated[
 IdleTimeout = Annotated[
     float, msgspec.Meta(gt=0.0, description="Time without a command until the goal ends, in seconds")
 ]
-GivesWay = Annotated[bool, msgspec.Meta(description="Whether the goal, while it is idle, ends for another goal")]
+Replaceable = Annotated[bool, msgspec.Meta(description="Whether the goal, while it is idle, ends for another goal")]
 Duration = Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]
 _STILL: Vector3 = (0.0, 0.0, 0.0)
 
@@ -81,14 +81,14 @@ class JogReady(Message, frozen=True, kw_only=True):
 class JogBlock(Message, frozen=True, kw_only=True):
     """What a jog of an arm stands before: two bodies, by name, and their distance in metres; empty when nothing does.
 
-    `ways_out` are the directions of the jog, in its axes, that take the two apart.
+    `directions_out` are the directions of the jog, in its axes, that take the two apart.
     """
 
     robot: str
     first: str = ""
     second: str = ""
     distance_m: float = 0.0
-    ways_out: tuple[JogDirection, ...] = ()
+    directions_out: tuple[JogDirection, ...] = ()
 
 
 class PrepareJog(Service[JogReady], frozen=True, kw_only=True):
@@ -122,7 +122,7 @@ class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_onl
     duration_s: Duration | None = None
     watchdog_s: WatchdogTime = 0.2
     idle_s: IdleTimeout = 5.0
-    gives_way: GivesWay = False
+    replaceable: Replaceable = False
     scene: JogCollisionOptions = JogCollisionOptions()
 
 
@@ -138,7 +138,7 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
     duration_s: Duration | None = None
     watchdog_s: WatchdogTime = 0.2
     idle_s: IdleTimeout = 5.0
-    gives_way: GivesWay = False
+    replaceable: Replaceable = False
     scene: JogCollisionOptions = JogCollisionOptions()
 
 

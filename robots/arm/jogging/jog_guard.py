@@ -14,8 +14,8 @@ import numpy as np
 from engine.errors import FlexcellError
 from engine.skills.jogging import JogBlock, JogCollisionOptions
 from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.jogging.directions_out import DirectionsOut
 from robots.arm.jogging.press_queue import Row
-from robots.arm.jogging.ways_out import WaysOut
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.planning.scene.planning_scene import NamePair
@@ -56,8 +56,8 @@ class JogGuard:
         workspace: Provides the scene.
         rule: Margin, and the objects that may be touched.
         to_joints: Maps commanded velocities to joint velocities.
-        ways_out: Finds the directions that lead away from what the arm stands before.
-        tell: Receives what the arm stands before, and after every check that finds nothing that it goes free.
+        directions_out: Finds the directions that lead away from what the arm stands before.
+        publish: Receives what the arm stands before, and after every check that finds nothing that it goes free.
     """
 
     def __init__(
@@ -67,16 +67,16 @@ class JogGuard:
         *,
         rule: JogCollisionOptions,
         to_joints: ToJoints,
-        ways_out: WaysOut,
-        tell: Callable[[JogBlock], None],
+        directions_out: DirectionsOut,
+        publish: Callable[[JogBlock], None],
     ) -> None:
         self._runner = runner
         self._workspace = workspace
         self._scene = SceneCheck(runner.name, workspace, rule=rule)
         self._to_joints = to_joints
-        self._ways_out = ways_out
-        self._tell = tell
-        self._told: tuple[NamePair, Array] | None = None
+        self._directions_out = directions_out
+        self._publish = publish
+        self._published: tuple[NamePair, Array] | None = None
         self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
         self._commanded = np.zeros(0)
         self._limit: _SpeedLimit | None = None
@@ -144,29 +144,33 @@ class JogGuard:
             self.held_by = reason
             self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest, pair=pair)
             again()
-            await self._tell_block(pair if fastest == 0.0 else None, is_free=not reason)
+            await self._publish_block(pair if fastest == 0.0 else None, is_free=not reason)
             with suppress(TimeoutError):
                 async with asyncio.timeout(_CHECK_PERIOD_S):
                     await self._recheck.wait()
 
-    async def _tell_block(self, pair: NamePair | None, *, is_free: bool) -> None:
+    async def _publish_block(self, pair: NamePair | None, *, is_free: bool) -> None:
         """Tell what the arm stands before, once at a place, or that it goes free."""
         name = self._runner.name
         if pair is None:
             if is_free:
-                self._told = None
-                self._tell(JogBlock(robot=name))
+                self._published = None
+                self._publish(JogBlock(robot=name))
             return
         joints = self._runner.port.sample().desired_rad.copy()
-        if self._told is not None and self._told[0] == pair and np.abs(joints - self._told[1]).max() < _SAME_PLACE_RAD:
+        if (
+            self._published is not None
+            and self._published[0] == pair
+            and np.abs(joints - self._published[1]).max() < _SAME_PLACE_RAD
+        ):
             return
-        self._told = pair, joints
+        self._published = pair, joints
         try:
             async with asyncio.timeout(_TIMEOUT_S):
-                self._tell(await self._ways_out.find(self._scene, pair))
+                self._publish(await self._directions_out.find(self._scene, pair))
         except (TimeoutError, FlexcellError) as error:
             _log.warning("%s: the ways out are not known: %s", name, error)
-            self._tell(JogBlock(robot=name, first=pair[0], second=pair[1]))
+            self._publish(JogBlock(robot=name, first=pair[0], second=pair[1]))
 
     async def _check(self, commanded: Array) -> tuple[float, str, NamePair | None]:
         """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""

@@ -30,10 +30,10 @@ from engine.skills.jogging import (
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from robots.arm.execution.motion_runner import MotionCompletion, MotionRunner
 from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
+from robots.arm.jogging.directions_out import DirectionsOut
 from robots.arm.jogging.jog_guard import JogGuard, ToJoints
 from robots.arm.jogging.jog_run import JogRun
 from robots.arm.jogging.press_queue import Row
-from robots.arm.jogging.ways_out import WaysOut
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.control.generators.damped_inverse import joint_velocity, twist_rows
@@ -152,11 +152,11 @@ class JogMotions:
             self._workspace,
             rule=self._with_held_part(rule, self._workspace),
             to_joints=to_joints,
-            ways_out=WaysOut(self._runner, steps),
-            tell=self._tell_block,
+            directions_out=DirectionsOut(self._runner, steps),
+            publish=self._publish_block,
         )
 
-    def _tell_block(self, block: JogBlock) -> None:
+    def _publish_block(self, block: JogBlock) -> None:
         if self._hiding is not None:
             self._hiding.cancel()
             self._hiding = None
@@ -168,7 +168,7 @@ class JogMotions:
         block = self._blocks.latest if self._blocks is not None else None
         if block is not None and block.first:
             self._hiding = asyncio.get_running_loop().call_later(
-                _BLOCK_SHOWN_S, self._tell_block, JogBlock(robot=self._runner.name)
+                _BLOCK_SHOWN_S, self._publish_block, JogBlock(robot=self._runner.name)
             )
 
     def _with_held_part(self, rule: JogCollisionOptions, workspace: Workspace) -> JogCollisionOptions:

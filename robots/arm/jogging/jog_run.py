@@ -62,7 +62,7 @@ class JogRun:
         self._width = width
         self._to_command = to_command
         self._guard = guard
-        self._gives_way = goal.gives_way
+        self._replaceable = goal.replaceable
         self._stream: MotionStream | None = None
         self._deadline: StreamDeadline | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -86,7 +86,7 @@ class JogRun:
         self.look()
         if self._presses.current is not None:
             self._send()
-        self._handle.gives_way = self._gives_way and self._presses.current is None
+        self._handle.replaceable = self._replaceable and self._presses.current is None
         if self._guard is not None:
             self._guard.watch_ahead(self._send_again)
         return stream
@@ -162,7 +162,7 @@ class JogRun:
             if press.over_s(self.watchdog_s) > now_s:
                 self._stream.send(sent, age_s=0.0 if press.released_s is not None else now_s - press.heard_s)
                 break
-        self._handle.gives_way = self._gives_way and press is None
+        self._handle.replaceable = self._replaceable and press is None
         self._wait_for_end(now_s)
 
     def _wait_for_end(self, now_s: float) -> None:

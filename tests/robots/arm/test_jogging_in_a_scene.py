@@ -216,9 +216,9 @@ async def test_a_block_names_both_bodies_their_distance_and_the_ways_that_take_t
         assert {block.first.partition("/")[0], block.second} == {"left", "wall"}
         nearest = await cell.bus.call(CheckCollision(robot="left"), to="cell")
         assert block.distance_m == pytest.approx(nearest.distance_m, abs=1e-6)
-        ways = {(way.axis, way.sign) for way in block.ways_out}
-        assert (1, -1) in ways
-        assert ways.isdisjoint({(1, 1), (0, 1), (0, -1), (2, 1), (2, -1)})
+        directions = {(each.axis, each.sign) for each in block.directions_out}
+        assert (1, -1) in directions
+        assert directions.isdisjoint({(1, 1), (0, 1), (0, -1), (2, 1), (2, -1)})
         away = JogTool(velocity=(0.0, -0.1, 0.0, 0.0, 0.0, 0.0), duration_s=0.4)
         await cell.bus.send_goal(away, to="left").result()
         assert blocks.latest == JogBlock(robot="left")

@@ -1157,7 +1157,7 @@ export interface JogBlockFrame {
   readonly first: string
   readonly second: string
   readonly distance_m: number
-  readonly ways_out: readonly JogDirection[]
+  readonly directions_out: readonly JogDirection[]
 }
 
 /** A direction of a jog: along (0 to 2) or about (3 to 5) an axis of the tool's frame, or a joint by its number. */

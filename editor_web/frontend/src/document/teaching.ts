@@ -193,7 +193,7 @@ export function heldWords(mode: string | undefined, activity: string | undefined
 /** What a jogged arm stands before, how near it is, and which of the directions `names` lead out. */
 export function blockWords(block: JogBlockFrame, names: readonly string[]): string {
   const millimetres_away = (block.distance_m * 1000).toFixed(1)
-  const ways = block.ways_out.map((way) => `${names[way.axis] ?? way.axis + 1} ${way.sign > 0 ? 'plus' : 'minus'}`)
-  const out = ways.length > 0 ? `Ways out: ${ways.join(', ')}.` : 'No direction leads out: lead the arm by hand, or jog its joints.'
+  const directions = block.directions_out.map((each) => `${names[each.axis] ?? each.axis + 1} ${each.sign > 0 ? 'plus' : 'minus'}`)
+  const out = directions.length > 0 ? `Directions out: ${directions.join(', ')}.` : 'No direction leads out: lead the arm by hand, or jog its joints.'
   return `${block.first} stands ${millimetres_away} mm before ${block.second}. ${out}`
 }

@@ -145,16 +145,16 @@ it('waits visibly until the arm is prepared, and again after a stop', () => {
 it('says what the arm stands before, how near, and which ways lead out, until it goes free', () => {
   const socket = prepared()
   const state = screen.getByRole('status', { name: 'State of jogging' })
-  const ways_out = [
+  const directions_out = [
     { axis: 2, sign: 1 },
     { axis: 3, sign: -1 },
   ]
-  const block = { k: 'block', robot: 'left', first: 'left/panda_hand', second: 'table', distance_m: 0.0062, ways_out }
+  const block = { k: 'block', robot: 'left', first: 'left/panda_hand', second: 'table', distance_m: 0.0062, directions_out }
   socket.tell(block)
-  expect(state).toHaveTextContent('left/panda_hand stands 6.2 mm before table. Ways out: Z plus, RX minus.')
-  socket.tell({ ...block, first: '', second: '', ways_out: [] })
+  expect(state).toHaveTextContent('left/panda_hand stands 6.2 mm before table. Directions out: Z plus, RX minus.')
+  socket.tell({ ...block, first: '', second: '', directions_out: [] })
   expect(state).toHaveTextContent('')
-  socket.tell({ ...block, ways_out: [] })
+  socket.tell({ ...block, directions_out: [] })
   expect(state).toHaveTextContent('No direction leads out')
   // The directions are those of the axes in which it was jogged.
   fireEvent.click(screen.getByRole('radio', { name: 'Joints' }))

@@ -12,11 +12,11 @@ from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array
 
-# Smallest growth of the distance after a step that counts as apart: beyond the rounding of the checks.
+# Smallest gain of the distance after a step that counts as apart: beyond the rounding of the checks.
 _APART_M = 2e-4
 
 
-class WaysOut:
+class DirectionsOut:
     """Tries a small step in every direction of a jog.
 
     Args:
@@ -46,7 +46,7 @@ class WaysOut:
             first=pair[0],
             second=pair[1],
             distance_m=max(0.0, start_m),
-            ways_out=tuple(
+            directions_out=tuple(
                 sorted(
                     (
                         JogDirection(axis=axis, sign=sign)
@@ -55,7 +55,7 @@ class WaysOut:
                         )
                         if distance_m > start_m + _APART_M and not touches
                     ),
-                    key=lambda way: (way.axis, -way.sign),
+                    key=lambda each: (each.axis, -each.sign),
                 )
             ),
         )

@@ -28,7 +28,7 @@ class Device:
         cancelled = asyncio.Event()
         handle.on_cancel(cancelled.set)
         handle.accept()
-        handle.gives_way = self.idle
+        handle.replaceable = self.idle
         await cancelled.wait()
         self.steps.append("brakes")
         await self.may_rest.wait()
