@@ -194,6 +194,7 @@ export function heldWords(mode: string | undefined, activity: string | undefined
 export function blockWords(block: JogBlockFrame, names: readonly string[]): string {
   const millimetres_away = (block.distance_m * 1000).toFixed(1)
   const directions = block.directions_out.map((each) => `${names[each.axis] ?? each.axis + 1} ${each.sign > 0 ? 'plus' : 'minus'}`)
-  const out = directions.length > 0 ? `Directions out: ${directions.join(', ')}.` : 'No direction leads out: lead the arm by hand, or jog its joints.'
+  const out =
+    directions.length > 0 ? `Directions out: ${directions.join(', ')}.` : 'No direction leads out: lead the arm by hand, or jog its joints.'
   return `${block.first} stands ${millimetres_away} mm before ${block.second}. ${out}`
 }
