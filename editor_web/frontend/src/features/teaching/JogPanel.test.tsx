@@ -43,21 +43,22 @@ function changes(): readonly (readonly [axis: number, sign: 1 | -1])[] {
 }
 
 function velocityOf([axis, sign]: readonly [number, 1 | -1]): readonly unknown[] {
-  return MM_S.map((full, at) => (at === axis ? expect.closeTo(sign * full) : expect.closeTo(0)))
+  return MM_S.map((full, at): unknown => (at === axis ? expect.closeTo(sign * full) : expect.closeTo(0)))
 }
 
-/** Each press is told as `jog`, one `go` or more of its velocity, `rest`, and nothing is between two. */
-function expectEachPress(sent: readonly unknown[], told: readonly (readonly [number, 1 | -1])[]): void {
-  let at = 0
-  for (const change of told) {
-    expect(sent[at]).toEqual({ k: 'jog', arm: 'left', space: 'tool', frame: 'world' })
-    expect(sent[at + 1]).toEqual({ k: 'go', velocity: velocityOf(change) })
-    at += 2
-    while ((sent[at] as { k: string }).k === 'go') at += 1
-    expect(sent[at]).toEqual({ k: 'rest' })
-    at += 1
+/** The presses that the server is told: each from `jog` over one `go` or more to `rest`. */
+function pressesOf(sent: readonly unknown[]): readonly (readonly unknown[])[] {
+  const presses: unknown[][] = []
+  for (const message of sent as readonly { readonly k: string }[]) {
+    if (message.k === 'jog') presses.push([])
+    if (message.k !== 'go' || presses.at(-1)?.length === 1) presses.at(-1)?.push(message)
   }
-  expect(at).toBe(sent.length)
+  return presses
+}
+
+function expected(told: readonly (readonly [number, 1 | -1])[]): readonly (readonly unknown[])[] {
+  const jog = { k: 'jog', arm: 'left', space: 'tool', frame: 'world' }
+  return told.map((change) => [jog, { k: 'go', velocity: velocityOf(change) }, { k: 'rest' }])
 }
 
 function button([axis, sign]: readonly [number, 1 | -1]): HTMLElement {
@@ -83,7 +84,7 @@ it.each(['mouse', 'touch'])('tells each press of a seeded sequence by %s', (poin
     fireEvent.pointerDown(key, { pointerId: 1, button: 0, pointerType })
     fireEvent.pointerUp(key, { pointerId: 1, button: 0, pointerType })
   }
-  expectEachPress(socket.sent.slice(begun), pressed)
+  expect(pressesOf(socket.sent.slice(begun))).toEqual(expected(pressed))
 })
 
 it('tells each press of a seeded sequence by keyboard', () => {
@@ -98,7 +99,7 @@ it('tells each press of a seeded sequence by keyboard', () => {
     fireEvent.keyDown(field, { key, shiftKey: axis > 2, repeat: true })
     fireEvent.keyUp(field, { key })
   }
-  expectEachPress(socket.sent.slice(begun), pressed)
+  expect(pressesOf(socket.sent.slice(begun))).toEqual(expected(pressed))
 })
 
 it('tells each press of a seeded sequence by gamepad', () => {
@@ -121,7 +122,7 @@ it('tells each press of a seeded sequence by gamepad', () => {
     pad.axes = [0, 0, 0, 0]
     look()
   }
-  expectEachPress(socket.sent.slice(begun), pressed)
+  expect(pressesOf(socket.sent.slice(begun))).toEqual(expected(pressed))
 })
 
 it('waits visibly until the arm is prepared, and again after a stop', () => {
