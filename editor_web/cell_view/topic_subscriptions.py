@@ -14,6 +14,7 @@ from engine.bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
 from engine.skills.vision import Detections
@@ -21,7 +22,7 @@ from engine.skills.vision import Detections
 _log = logging.getLogger("flexcell.cell_view")
 # By type, not by name: the cell chooses the names of arms and cameras. Descriptions come first, because they say
 # which bodies of the scene belong to arms.
-_ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, PathPreview, CameraInfo)
+_ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, PathPreview, JogBlock, CameraInfo)
 # Cameras take images only while their data is subscribed.
 _WHILE_SHOWN: dict[str, LayerGroup] = {
     OccupancyState.__name__: "voxels",

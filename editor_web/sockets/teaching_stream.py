@@ -9,6 +9,7 @@ from typing import Annotated, cast
 
 import msgspec
 from fastapi import Query, Request, Response, WebSocket
+from msgspec.structs import asdict
 
 from editor_web.cell_view import CellView
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, run_while_connected
@@ -18,6 +19,7 @@ from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, read_message, send_message
 from editor_web.teaching.arm_status import ArmStatusReader
 from editor_web.teaching.buttons import PressedButtons
+from editor_web.teaching.jog_readiness import JogPreparation
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.playback import play
 from editor_web.teaching.taught_entries import compare_primitive, read_taught, search_entries, trace, write_tags
@@ -28,10 +30,12 @@ from editor_web.teaching.teaching_messages import (
     EntryPage,
     FromPage,
     HelpingHandFrame,
+    JogBlockFrame,
     JogStatus,
     JogVelocity,
     PlaybackResult,
     PlayBody,
+    PrepareJogging,
     PreviewTaught,
     PrimitiveComparison,
     PushToolBody,
@@ -45,6 +49,7 @@ from editor_web.teaching.teaching_messages import (
 from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
 from engine.project import Session
+from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.teaching import TeachStatus
 
@@ -135,6 +140,8 @@ class _Page:
         self._waiting: deque[ToPage] = deque(maxlen=MOST_WAITING)
         self._board = ArmStatusReader(backend)
         self._jogger = Jogger(backend.bus, taken=joggers, send=self._waiting.append)
+        self._preparation = JogPreparation(backend.bus, self._waiting.append)
+        self._block: JogBlock | None = None
         self._buttons = PressedButtons(backend.bus, send=self._waiting.append)
         self._unsubscribe: list[Callable[[], None]] = []
         self._hand: TeachStatus | None = None
@@ -149,10 +156,12 @@ class _Page:
         self._waiting.append(await self._board.arms())
         self._follow("teach/status", self._on_hand)
         self._follow("store/changes", self._on_entries)
+        self._unsubscribe.append(self._backend.recovery.when_changed(self._preparation.repeat))
 
     async def close(self) -> None:
         """Release everything: the arm first."""
         await self._jogger.rest()
+        await self._preparation.close()
         await self._buttons.release()
         await self._clear_previews()
         for unsubscribe in self._unsubscribe:
@@ -169,12 +178,14 @@ class _Page:
                 self._waiting.append(
                     RefusedFrame(what="jog", message="you may look only", hint="log in with the operator token")
                 )
+            case PrepareJogging():
+                self._preparation.begin(request.arm)
             case StartJog():
                 await self._jogger.begin(request)
             case JogVelocity():
                 await self._jogger.go(request.velocity)
             case StopJog():
-                await self._jogger.rest()
+                await self._jogger.release()
             case ButtonInput():
                 await self._buttons.take(request)
 
@@ -190,6 +201,8 @@ class _Page:
             messages.append(EntriesChanged())
         if (jogging := self._jogging()) is not None:
             messages.append(jogging)
+        if (block := self._jog_block()) is not None:
+            messages.append(block)
         arms = await self._board.changed()
         return [*messages, ArmsLiveFrame(arms=arms)] if arms else messages
 
@@ -203,6 +216,15 @@ class _Page:
             return None
         self._held_by = held_by
         return JogStatus(arm=arm, held_by=held_by) if arm else None
+
+    def _jog_block(self) -> JogBlockFrame | None:
+        """Return what the arm of the page stands before, if that has changed."""
+        arm = self._preparation.arm
+        block = self._backend.latest(f"{arm}/jog_block") if arm else None
+        if not isinstance(block, JogBlock) or block == self._block:
+            return None
+        self._block = block
+        return JogBlockFrame(**asdict(block))
 
     def _follow(self, topic: str, callback: Callable[[object], None]) -> None:
         try:

@@ -11,6 +11,7 @@ from editor_web.http_bodies.common_bodies import Name, RequestBody
 from engine.messages import RobotDescription
 from engine.skills.dmp import CartFit, JointFit
 from engine.skills.entries import EntryChanged
+from engine.skills.jogging import JogBlock
 from engine.skills.motion_trace import Trace
 from engine.skills.teaching import TeachStatus
 
@@ -75,6 +76,18 @@ class JogStatus(msgspec.Struct, frozen=True, kw_only=True, tag="jogging", tag_fi
     held_by: str = ""
 
 
+class JogReadiness(msgspec.Struct, frozen=True, kw_only=True, tag="ready", tag_field="k"):
+    """Whether an arm can be jogged at once; not ready with a `reason` where its path cannot be checked."""
+
+    arm: str
+    ready: bool
+    reason: str = ""
+
+
+class JogBlockFrame(JogBlock, frozen=True, kw_only=True, tag="block", tag_field="k"):
+    """What the arm that this page jogs stands before, and which directions lead out; no names for nothing."""
+
+
 class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag_field="k"):
     """A message of the page was refused; `what` is its kind."""
 
@@ -83,8 +96,14 @@ class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag
     hint: str
 
 
+class PrepareJogging(msgspec.Struct, frozen=True, kw_only=True, tag="prepare", tag_field="k"):
+    """From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop."""
+
+    arm: Name
+
+
 class StartJog(msgspec.Struct, frozen=True, kw_only=True, tag="jog", tag_field="k"):
-    """From the page: prepare to jog this arm, until `rest`."""
+    """From the page: a key goes down that jogs this arm, until `rest`."""
 
     arm: Name
     space: Space
@@ -98,7 +117,7 @@ class JogVelocity(msgspec.Struct, frozen=True, kw_only=True, tag="go", tag_field
 
 
 class StopJog(msgspec.Struct, frozen=True, kw_only=True, tag="rest", tag_field="k"):
-    """From the page: the key is up."""
+    """From the page: the key is up; a press during which the arm has not moved is executed for a moment."""
 
 
 class ButtonInput(msgspec.Struct, frozen=True, kw_only=True, tag="button", tag_field="k"):
@@ -175,5 +194,14 @@ class PushToolBody(RequestBody, frozen=True, kw_only=True):
     duration_s: Annotated[float, Meta(gt=0.0, le=2.0)]
 
 
-ToPage = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
-FromPage = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
+ToPage = (
+    ArmInfoFrame
+    | ArmsLiveFrame
+    | HelpingHandFrame
+    | EntriesChanged
+    | JogStatus
+    | JogReadiness
+    | JogBlockFrame
+    | RefusedFrame
+)
+FromPage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught

@@ -36,7 +36,12 @@ class ActiveGoal(Generic[F]):
         self.status = GoalStatus.PENDING
         self.started = False
         self.cancel_requested = False
+        self.replaceable = False
+        """Whether it is idle now and ends for the next goal; the handler sets this, see `SkillBus.send_goal`."""
+        self.was_replaced = False
+        self.ended = asyncio.Event()
         self.accepted = asyncio.Event()
+        self.accept_listeners: list[Callable[[], None]] = []
         self.latest_feedback: F | None = None
         self.feedback_listeners: list[Callable[[F], None]] = []
         self.cancel_callback: Callable[[], None] | None = None
@@ -50,6 +55,8 @@ class ActiveGoal(Generic[F]):
         if self.status is GoalStatus.PENDING:
             self.status = GoalStatus.ACTIVE
             self.accepted.set()
+            for listener in self.accept_listeners:
+                listener()
 
     def feedback(self, message: F) -> None:
         """Send a feedback message to the client."""
@@ -110,6 +117,11 @@ class GoalHandle(Generic[R, F]):
         return self._goal.status
 
     @property
+    def replaceable(self) -> bool:
+        """True while the goal is idle and would end for another one."""
+        return self._goal.replaceable and not self._goal.was_replaced
+
+    @property
     def feedback(self) -> F | None:
         """The latest feedback."""
         return self._goal.latest_feedback
@@ -117,6 +129,10 @@ class GoalHandle(Generic[R, F]):
     def on_feedback(self, listener: Callable[[F], None]) -> None:
         """Call `listener` with every feedback message from now on."""
         self._goal.feedback_listeners.append(listener)
+
+    def on_accepted(self, listener: Callable[[], None]) -> None:
+        """Call `listener` when the server accepts the goal, before its handler goes on."""
+        self._goal.accept_listeners.append(listener)
 
     async def accepted(self) -> None:
         """Wait until the server has accepted.
@@ -149,6 +165,11 @@ class GoalHandle(Generic[R, F]):
                 self._task.cancel()
         elif self._goal.started:
             self._task.cancel()
+
+    def replace(self) -> None:
+        """Request a stop because another goal takes the place of this idle one."""
+        self._goal.was_replaced = True
+        self.cancel()
 
     async def hold(self) -> None:
         """Bring the device to rest and keep the goal; returns when the server confirms.

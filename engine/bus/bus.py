@@ -164,7 +164,7 @@ class SkillBus:
         """Serve the action `skill` at `<namespace>/<skill_name>`.
 
         Actions that share `exclusive` execute one goal at a time between them; a second goal is rejected,
-        and the message names the active one.
+        and the message names the active one. An idle goal, see `ActiveGoal.replaceable`, ends for it instead.
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
@@ -189,6 +189,7 @@ class SkillBus:
         if server is None:
             raise self._no_such_service(address)
         if server.commands:
+            self._end_idle_goals(server.commands, holder)
             self.leases.refuse_foreign(server.commands, holder)
         try:
             response = server.handler(request)
@@ -204,7 +205,8 @@ class SkillBus:
     ) -> GoalHandle[R, F]:
         """Send a goal; returns at once, await `accepted` and `result` of the handle.
 
-        The goal leases `to` for `holder` until it ends.
+        The goal leases `to` for `holder` until it ends. An idle goal that gives way is cancelled, and this one begins
+        at its end; an idle goal of a run gives way to goals of the same run only.
 
         Raises:
             NoSuchSkill: there is no such action.
@@ -214,6 +216,7 @@ class SkillBus:
         server = self._actions.get(address)
         if server is None:
             raise self._no_such_service(address)
+        self._end_idle_goals(to, holder, server.exclusive)
         self.leases.acquire((to,), holder)
         self._goal_count += 1
         active: ActiveGoal[Any] = ActiveGoal(goal_id or f"g{self._goal_count}", address, holder)
@@ -226,7 +229,8 @@ class SkillBus:
     async def _serve(
         self, server: _ActionServer, goal: Action[Any, Any], active: ActiveGoal[Any], to: str
     ) -> GoalEnd[Any]:
-        other = self._running.get(server.exclusive)
+        while (other := self._running.get(server.exclusive)) is not None and other.was_replaced:
+            await other.ended.wait()
         try:
             if other is not None:
                 return await execute_goal(_rejecting_handler(other), goal, active)
@@ -235,9 +239,25 @@ class SkillBus:
         finally:
             if self._running.get(server.exclusive) is active:
                 del self._running[server.exclusive]
-            self.leases.release((to,), active.holder)
+            active.ended.set()
+            if not active.was_replaced:
+                self.leases.release((to,), active.holder)
             if active.holder.run == ANONYMOUS_HOLDER.run and len(self.goals(ANONYMOUS_HOLDER.run)) <= 1:
                 self.leases.release_run(ANONYMOUS_HOLDER.run)
+
+    def _end_idle_goals(self, resource: str, holder: Holder, exclusive: str = "") -> None:
+        """Cancel the idle goals that give way to `holder` on a resource, and release their leases at once."""
+        root, running = _root_of(resource), self._running.get(exclusive)
+        for handle in tuple(self._goals):
+            is_running = running is not None and (running.id, running.address) == (handle.id, handle.address)
+            # What a run has leased stays with it until it ends.
+            is_foreign = handle.holder_run != holder.run and not handle.holder.branch
+            if not handle.replaceable or not (is_running or (is_foreign and _root_of(handle.address) == root)):
+                continue
+            handle.replace()
+            self.leases.release((handle.address.rpartition("/")[0],), handle.holder)
+            if is_foreign and len(self.goals(handle.holder_run)) == 1:
+                self.leases.release_run(handle.holder_run)
 
     def request_type(self, address: str) -> type[Skill[Any]]:
         """Return the request type of the skill at a full bus address; raises NoSuchSkill."""
@@ -284,6 +304,10 @@ def _rejecting_handler(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]
         )
 
     return reject
+
+
+def _root_of(address: str) -> str:
+    return address.partition("/")[0]
 
 
 def _traffic(topic: Topic[Any]) -> str:

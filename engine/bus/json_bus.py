@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from typing import Any, Protocol
 
 import msgspec
@@ -37,8 +37,14 @@ class JsonBus(Protocol):
         """Call a service and return its response as JSON."""
         ...
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
-        """Send a goal and wait for its end; on cancellation, cancel the goal and wait for its end first."""
+    async def perform(
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
+    ) -> GoalEnd[Any]:
+        """Send a goal and wait for its end; on cancellation, cancel the goal and wait for its end first.
+
+        `on_sent` receives the goal once it is sent; it is not called by a bus behind a server, which tells of the end
+        only.
+        """
         ...
 
 
@@ -95,13 +101,18 @@ class LocalJsonBus:
             raise BusError("this is an action, not a service", where=address, hint="use `flexcell bus goal`")
         return _text(await self._bus.call(typed, to=namespace, holder=CLI_HOLDER))
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+    async def perform(
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
+    ) -> GoalEnd[Any]:
         """Send a goal and wait for its end.
 
         Raises:
             BusError: no such action, a service, an invalid goal, or a resource held by a run.
         """
-        return await self.ended(self.send(address, goal))
+        handle = self.send(address, goal)
+        if on_sent is not None:
+            on_sent(handle)
+        return await self.ended(handle)
 
     def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:
         """Send a goal; then await `ended`. Raises as `perform` does."""

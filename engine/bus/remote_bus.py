@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, Self
@@ -10,6 +10,7 @@ from typing import Any, Self
 import httpx
 import msgspec
 
+from engine.bus.action import GoalHandle
 from engine.bus.bus import BusEntry
 from engine.errors import BusError, Cause
 from engine.host.state_folder_names import SERVER_FILE
@@ -119,7 +120,9 @@ class RemoteJsonBus:
         body = {"address": address, "request": request}
         return verify_response(await self._client.post("/api/v1/bus/call", json=body)).text
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+    async def perform(
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
+    ) -> GoalEnd[Any]:
         """Send a goal and wait for its end; the server cancels the goal when the connection is lost."""
         body = {"address": address, "request": goal}
         response = verify_response(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))

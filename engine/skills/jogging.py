@@ -1,8 +1,12 @@
 """Jogging of an arm from a panel, continuously or in steps; served under the arm's name.
 
 Hold-to-run: send JogJoints or JogTool without a velocity and publish `JogCommand`s on `<arm>/jog` while
-the key is pressed. After `watchdog_s` without a command the arm comes to rest, and after `idle_s` the
-goal ends as succeeded. Cancel the goal to end it at once.
+the key is pressed, then one of zero. After `watchdog_s` without a command the arm comes to rest, and after `idle_s`
+the goal ends as succeeded. Cancel the goal to end it at once. One goal serves many presses: another direction, and for
+the tool other axes, are only another command.
+
+PrepareJog before the first press: it returns when the collision checks of the arm answer. Why a jog stands before an
+obstacle, and which ways lead out, is published on `<arm>/jog_block`.
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ from typing import Annotated
 import msgspec
 
 from engine.messages import Message, Pose, Vector3
-from engine.skill import Action
+from engine.skill import Action, Service
 from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult, Speed
 from engine.skills.planning import Margin
@@ -23,14 +27,30 @@ WatchdogTime = Annotated[
 IdleTimeout = Annotated[
     float, msgspec.Meta(gt=0.0, description="Time without a command until the goal ends, in seconds")
 ]
+Replaceable = Annotated[bool, msgspec.Meta(description="Whether the goal, while it is idle, ends for another goal")]
 Duration = Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]
 _STILL: Vector3 = (0.0, 0.0, 0.0)
 
 
+PressTime = Annotated[
+    float, msgspec.Meta(ge=0.0, le=1.0, description="Shortest time of the press that this command begins, in seconds")
+]
+MOST_WAIT_S = 1.0
+"""A press that was released before its path was checked is dropped after so long."""
+
+
 class JogCommand(Message, frozen=True, kw_only=True):
-    """The commanded velocity on `<arm>/jog`: rad/s per joint for JogJoints; m/s, then rad/s for JogTool."""
+    """The commanded velocity on `<arm>/jog`: rad/s per joint for JogJoints; m/s, then rad/s for JogTool.
+
+    With `least_s` it begins a press: once its path is checked the arm moves for at least so long, although a later
+    command says otherwise; presses are executed one after the other. A press that is blocked, or not checked within
+    `MOST_WAIT_S` of its release, is dropped. A press that falls silent without a release ends with the watchdog.
+    `frame` are the axes of this velocity in JogTool, by default those of the goal.
+    """
 
     velocity: tuple[float, ...]
+    frame: Axes | None = None
+    least_s: PressTime = 0.0
 
 
 class JogCollisionOptions(Message, frozen=True, kw_only=True):
@@ -43,6 +63,39 @@ class JogCollisionOptions(Message, frozen=True, kw_only=True):
     minded: bool = True
     margin_m: Margin = 0.005
     may_touch: tuple[str, ...] = ()
+
+
+class JogDirection(Message, frozen=True, kw_only=True):
+    """A direction of a jog: along (0 to 2) or about (3 to 5) an axis of the tool's frame, or a joint by its number."""
+
+    axis: int
+    sign: int
+
+
+class JogReady(Message, frozen=True, kw_only=True):
+    """An arm is ready to be jogged; the preparation took `waited_s`."""
+
+    waited_s: float
+
+
+class JogBlock(Message, frozen=True, kw_only=True):
+    """What a jog of an arm stands before: two bodies, by name, and their distance in metres; empty when nothing does.
+
+    `directions_out` are the directions of the jog, in its axes, that take the two apart.
+    """
+
+    robot: str
+    first: str = ""
+    second: str = ""
+    distance_m: float = 0.0
+    directions_out: tuple[JogDirection, ...] = ()
+
+
+class PrepareJog(Service[JogReady], frozen=True, kw_only=True):
+    """Return when a jog of the arm would start at once: its planning scene and the checks of its path are loaded.
+
+    Fails with the reason where paths cannot be checked.
+    """
 
 
 class JointJogFeedback(Message, frozen=True, kw_only=True):
@@ -69,6 +122,7 @@ class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_onl
     duration_s: Duration | None = None
     watchdog_s: WatchdogTime = 0.2
     idle_s: IdleTimeout = 5.0
+    replaceable: Replaceable = False
     scene: JogCollisionOptions = JogCollisionOptions()
 
 
@@ -84,6 +138,7 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
     duration_s: Duration | None = None
     watchdog_s: WatchdogTime = 0.2
     idle_s: IdleTimeout = 5.0
+    replaceable: Replaceable = False
     scene: JogCollisionOptions = JogCollisionOptions()
 
 

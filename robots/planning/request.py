@@ -177,3 +177,27 @@ class CollisionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_colli
     joints_rad: tuple[float, ...]
     occupancy: OccupancyGrid | None = None
     margin_m: float = 0.0
+
+
+class PairDistanceRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_pair_distances"):
+    """Asks how far two bodies, by name, are from each other with an arm at several configurations (radians, n each).
+
+    Bodies nearer than `margin_m` count as touching.
+    """
+
+    scene: PlanningScene
+    arm: str
+    rows_rad: tuple[tuple[float, ...], ...]
+    pair: NamePair
+    occupancy: OccupancyGrid | None = None
+    margin_m: float = 0.0
+
+
+class PairDistances(msgspec.Struct, frozen=True, kw_only=True, tag="pair_distances"):
+    """Distances of a pair in metres, negative inside, one for each configuration.
+
+    `touches_another` is true where a pair touches that does not touch at the first configuration.
+    """
+
+    distance_m: tuple[float, ...]
+    touches_another: tuple[bool, ...]

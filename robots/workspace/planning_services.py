@@ -12,6 +12,8 @@ from engine.skills.planning_scene import CollisionReport
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PlanAnswer,
@@ -59,6 +61,10 @@ class PlanningServices:
     async def look(self, request: CollisionRequest) -> CollisionReport:
         """Return the collisions of an arm."""
         return await self._service("watch").look(request)
+
+    async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations."""
+        return await self._service("watch").pair_distances(request)
 
     @property
     def watch_unavailable_reason(self) -> str:

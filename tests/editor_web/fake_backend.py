@@ -14,7 +14,7 @@ from typing import Any, cast
 from msgspec.structs import replace
 
 from engine.archive import Archive
-from engine.bus import SkillBus
+from engine.bus import GoalHandle, SkillBus
 from engine.bus.bus import BusEntry
 from engine.bus.json_bus import JsonBus
 from engine.cell import CellConnection, OpenCell
@@ -77,7 +77,9 @@ class TopicBus:
     async def call(self, address: str, request: object) -> str:
         raise BusError("no such service", where=address)
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+    async def perform(
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
+    ) -> GoalEnd[Any]:
         raise BusError("no such service", where=address)
 
 

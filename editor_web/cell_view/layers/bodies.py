@@ -16,6 +16,7 @@ from editor_web.cell_view.rendering.layer_groups import root_of
 from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, SceneDescription
+from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 
 _log = logging.getLogger("flexcell.cell_view")
@@ -36,7 +37,7 @@ def body_node(frame: str, arms: frozenset[str], *, under: str = "") -> str:
 class BodyLayer:
     """Draws `cell/scene` and moves it by `cell/frames`; on the canvas of one page, floor and camera stay unchanged.
 
-    Bodies that would collide on a blocked path are red.
+    Bodies that would collide on a blocked path, or that a jog stands before, are red.
     """
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
@@ -49,6 +50,7 @@ class BodyLayer:
         self._drawn: dict[str, WorldPose] = {}
         self._shapes: list[tuple[str, GeometryHandle, Rgb]] = []
         self._paths: Mapping[str, PathPreview] = {}
+        self._blocks: Mapping[str, JogBlock] = {}
         self._marked: frozenset[str] = frozenset()
 
     def draw(self, latest: LatestMessages) -> None:
@@ -56,15 +58,15 @@ class BodyLayer:
         scene, poses, arms = latest.scene, latest.frames, frozenset(latest.descriptions)
         if scene is not None and (scene is not self._scene or arms != self._arms):
             self._scene, self._arms, self._poses = scene, arms, None
-            self._paths, self._marked = {}, frozenset()
+            self._paths, self._blocks, self._marked = {}, {}, frozenset()
             with self._server.atomic():
                 self._build(scene, latest)
         if poses is not None and poses is not self._poses:
             self._poses = poses
             self._move(poses_by_frame(poses))
-        if latest.paths is not self._paths:
-            self._paths = latest.paths
-            self._mark(bodies_in_contact(latest.paths, {name for name, _, _ in self._shapes}))
+        if latest.paths is not self._paths or latest.blocks is not self._blocks:
+            self._paths, self._blocks = latest.paths, latest.blocks
+            self._mark(bodies_in_contact(self._paths, self._blocks, {name for name, _, _ in self._shapes}))
 
     def _build(self, scene: SceneDescription, latest: LatestMessages) -> None:
         known = poses_by_frame(latest.frames)

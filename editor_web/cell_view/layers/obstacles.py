@@ -17,6 +17,7 @@ from editor_web.cell_view.rendering.layer_groups import root_of
 from editor_web.cell_view.rendering.transforms import WorldPose, matrix_of_pose, pose_of_matrix, poses_by_frame
 from engine.messages import FramePoses, Pose, SceneDescription
 from engine.messages.shapes import Obstacle, Solid
+from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
 
@@ -27,9 +28,12 @@ _BLOCKING: Rgb = (220, 38, 38)
 _OPACITY = 0.35
 
 
+_Read = tuple[PlanningSceneState, SceneDescription | None, Mapping[str, PathPreview], Mapping[str, JogBlock]]
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Shown:
-    """Objects to draw: obstacles, held parts, and the names of those that block a path."""
+    """Objects to draw: obstacles, held parts, and the names of those that block a path or a jog."""
 
     obstacles: tuple[Obstacle, ...]
     held: tuple[HeldPart, ...]
@@ -42,7 +46,7 @@ class ObstacleLayer:
     def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
         self._root = root_of("obstacles", under=under)
-        self._read: tuple[PlanningSceneState, SceneDescription | None, Mapping[str, PathPreview]] | None = None
+        self._read: _Read | None = None
         self._drawn: _Shown | None = None
         self._roots: list[viser.FrameHandle] = []
         self._held: list[tuple[HeldPart, viser.FrameHandle]] = []
@@ -50,13 +54,13 @@ class ObstacleLayer:
 
     def draw(self, latest: LatestMessages) -> None:
         """Draw the changes."""
-        state, scene, paths = latest.planning_scene, latest.scene, latest.paths
+        state, scene, paths, blocks = latest.planning_scene, latest.scene, latest.paths, latest.blocks
         if state is None:
             return
-        read = self._read
-        if read is None or read[0] is not state or read[1] is not scene or read[2] is not paths:
-            self._read = (state, scene, paths)
-            shown = _shown(state, scene, paths)
+        now: _Read = (state, scene, paths, blocks)
+        if self._read is None or any(one is not other for one, other in zip(self._read, now, strict=True)):
+            self._read = now
+            shown = _shown(*now)
             # A moving part changes the scene, but is drawn by the body layer.
             if shown != self._drawn:
                 self._drawn, self._poses = shown, None
@@ -102,11 +106,16 @@ class ObstacleLayer:
                     root.position, root.wxyz = now.xyz, now.wxyz
 
 
-def _shown(state: PlanningSceneState, scene: SceneDescription | None, paths: Mapping[str, PathPreview]) -> _Shown:
+def _shown(
+    state: PlanningSceneState,
+    scene: SceneDescription | None,
+    paths: Mapping[str, PathPreview],
+    blocks: Mapping[str, JogBlock],
+) -> _Shown:
     # A fixture with several bodies has `name/0`, `name/1`.
     known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
     held = {part.name for part in state.held}
-    blocking = bodies_in_contact(paths, [each.name for each in (*state.obstacles, *state.held)])
+    blocking = bodies_in_contact(paths, blocks, [each.name for each in (*state.obstacles, *state.held)])
     return _Shown(
         obstacles=tuple(
             each

@@ -6,6 +6,7 @@ import threading
 
 from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
 from engine.skills.vision import Detections
@@ -14,8 +15,8 @@ from engine.skills.vision import Detections
 class LatestMessages:
     """One reference per kind, the latest message wins; `arrived` is set with every message.
 
-    `descriptions`, `paths`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
-    frozen, so that a reader always sees a complete one.
+    `descriptions`, `paths`, `blocks`, `cameras`, `depths` and `detections` are by the name of the arm or camera.
+    Messages are frozen, so that a reader always sees a complete one.
     """
 
     def __init__(self) -> None:
@@ -26,6 +27,7 @@ class LatestMessages:
         self.occupancy: OccupancyGrid | None = None
         self.descriptions: dict[str, RobotDescription] = {}
         self.paths: dict[str, PathPreview] = {}
+        self.blocks: dict[str, JogBlock] = {}
         self.occupancy_state: OccupancyState | None = None
         self.cameras: dict[str, CameraInfo] = {}
         self.depths: dict[str, DepthImage] = {}
@@ -50,6 +52,8 @@ class LatestMessages:
                 self.descriptions = {**self.descriptions, name: message}
             case PathPreview():
                 self.paths = {**self.paths, name: message}
+            case JogBlock():
+                self.blocks = {**self.blocks, name: message}
             case DepthImage():
                 self.depths = {**self.depths, name: message}
             case Detections():

@@ -12,14 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import FlexcellError
-from engine.skills.jogging import JogCollisionOptions
+from engine.skills.jogging import JogBlock, JogCollisionOptions
 from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.jogging.directions_out import DirectionsOut
+from robots.arm.jogging.press_queue import Row
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.scene_check import SceneCheck
+from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array, JointTrajectory
 from robots.workspace.workspace import Workspace
 
-Row = tuple[float, ...]
 ToJoints = Callable[[Array, Array], Array]
 """Maps a commanded velocity and joint positions (n,) to joint velocities (n,)."""
 
@@ -32,15 +34,18 @@ _BRAKING_SHARE, _USED_SHARE = 0.4, 0.9
 _CREEP = 0.02
 # A velocity within 11 degrees of the checked direction counts as checked.
 _SAME_DIRECTION = 0.98
+# Within this the ways out are the same.
+_SAME_PLACE_RAD = 0.01
 _log = logging.getLogger("flexcell.arm")
 
 
 @dataclass(frozen=True, kw_only=True)
 class _SpeedLimit:
-    """Speed limit of a jog along a unit direction, from the last check."""
+    """Speed limit of a jog along a unit direction, from the last check, and what it would touch there first."""
 
     direction: Array
     fastest: float
+    pair: NamePair | None
 
 
 class JogGuard:
@@ -51,21 +56,39 @@ class JogGuard:
         workspace: Provides the scene.
         rule: Margin, and the objects that may be touched.
         to_joints: Maps commanded velocities to joint velocities.
+        directions_out: Finds the directions that lead away from what the arm stands before.
+        publish: Receives what the arm stands before, and after every check that finds nothing that it goes free.
     """
 
     def __init__(
-        self, runner: MotionRunner, workspace: Workspace, *, rule: JogCollisionOptions, to_joints: ToJoints
+        self,
+        runner: MotionRunner,
+        workspace: Workspace,
+        *,
+        rule: JogCollisionOptions,
+        to_joints: ToJoints,
+        directions_out: DirectionsOut,
+        publish: Callable[[JogBlock], None],
     ) -> None:
         self._runner = runner
         self._workspace = workspace
         self._scene = SceneCheck(runner.name, workspace, rule=rule)
         self._to_joints = to_joints
+        self._directions_out = directions_out
+        self._publish = publish
+        self._published: tuple[NamePair, Array] | None = None
         self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
         self._commanded = np.zeros(0)
         self._limit: _SpeedLimit | None = None
         self._recheck = asyncio.Event()
         self._monitoring: asyncio.Task[None] | None = None
         self.held_by = ""
+
+    @property
+    def is_blocked(self) -> bool:
+        """Whether the commanded direction is checked, and the arm stands there before an obstacle."""
+        limit = self._limit
+        return limit is not None and limit.fastest == 0.0 and limit.pair is not None
 
     async def open(self) -> None:
         """Return when the scene and the path checks are ready; call `close` when the jog has ended.
@@ -109,38 +132,67 @@ class JogGuard:
 
     async def _monitor(self, again: Callable[[], None]) -> None:
         while True:
-            if not self._commanded.any():
+            while not self._commanded.any():
+                # A key that was released at once leaves a request without a direction.
+                self._recheck.clear()
                 await self._recheck.wait()
             self._recheck.clear()
             commanded = self._commanded
-            fastest, reason = await self._check(commanded)
+            fastest, reason, pair = await self._check(commanded)
             if reason and not self.held_by:
                 _log.info("%s: jog speed limited: %s", self._runner.name, reason)
             self.held_by = reason
-            self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest)
+            self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest, pair=pair)
             again()
+            await self._publish_block(pair if fastest == 0.0 else None, is_free=not reason)
             with suppress(TimeoutError):
                 async with asyncio.timeout(_CHECK_PERIOD_S):
                     await self._recheck.wait()
 
-    async def _check(self, commanded: Array) -> tuple[float, str]:
-        """Return the speed limit in the direction of `commanded`, and the reason for it."""
+    async def _publish_block(self, pair: NamePair | None, *, is_free: bool) -> None:
+        """Tell what the arm stands before, once at a place, or that it goes free."""
+        name = self._runner.name
+        if pair is None:
+            if is_free:
+                self._published = None
+                self._publish(JogBlock(robot=name))
+            return
+        joints = self._runner.port.sample().desired_rad.copy()
+        if (
+            self._published is not None
+            and self._published[0] == pair
+            and np.abs(joints - self._published[1]).max() < _SAME_PLACE_RAD
+        ):
+            return
+        self._published = pair, joints
+        try:
+            async with asyncio.timeout(_TIMEOUT_S):
+                self._publish(await self._directions_out.find(self._scene, pair))
+        except (TimeoutError, FlexcellError) as error:
+            _log.warning("%s: the ways out are not known: %s", name, error)
+            self._publish(JogBlock(robot=name, first=pair[0], second=pair[1]))
+
+    async def _check(self, commanded: Array) -> tuple[float, str, NamePair | None]:
+        """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""
         if self._scene.unobserved_reason:
-            return 0.0, self._scene.unobserved_reason
+            return 0.0, self._scene.unobserved_reason, None
         path, travelled_s, slowing_s = self._ahead(commanded)
         try:
             async with asyncio.timeout(_TIMEOUT_S):
                 check = await self._scene.check(path)
         except TimeoutError:
-            return 0.0, f"its path was not checked within {_TIMEOUT_S:g} s"
+            return 0.0, f"its path was not checked within {_TIMEOUT_S:g} s", None
         except FlexcellError as error:
-            return 0.0, f"path monitoring is not available: {error.message}"
+            return 0.0, f"path monitoring is not available: {error.message}", None
         if check.blocked_at_s is None:
-            return float(np.linalg.norm(commanded)), ""
+            return float(np.linalg.norm(commanded)), "", None
         # The free path ends at the sample before the first contact.
         free_s = float(travelled_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
-        return float(np.linalg.norm(commanded)) * _stoppable_share(free_s * _USED_SHARE, slowing_s), describe_contacts(
-            check.pairs
+        share = _stoppable_share(free_s * _USED_SHARE, slowing_s)
+        return (
+            float(np.linalg.norm(commanded)) * share,
+            describe_contacts(check.pairs),
+            check.pairs[0] if check.pairs else None,
         )
 
     def _ahead(self, commanded: Array) -> tuple[JointTrajectory, Array, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
@@ -10,14 +11,18 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from engine.bus import ActiveGoal, SkillBus
-from engine.errors import BusError, GoalRejected
+from engine.bus import ActiveGoal, SkillBus, Topic
+from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
+from engine.skills.axes import Axes
 from engine.skills.jogging import (
+    JogBlock,
     JogCollisionOptions,
     JogCommand,
     JogJoints,
+    JogReady,
     JogTool,
     JointJogFeedback,
+    PrepareJog,
     StepJoints,
     StepTool,
     ToolJogFeedback,
@@ -25,8 +30,10 @@ from engine.skills.jogging import (
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from robots.arm.execution.motion_runner import MotionCompletion, MotionRunner
 from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
-from robots.arm.jogging.jog_guard import JogGuard, Row, ToJoints
+from robots.arm.jogging.directions_out import DirectionsOut
+from robots.arm.jogging.jog_guard import JogGuard, ToJoints
 from robots.arm.jogging.jog_run import JogRun
+from robots.arm.jogging.press_queue import Row
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.control.generators.damped_inverse import joint_velocity, twist_rows
@@ -36,6 +43,9 @@ from robots.port import Array, JointTrajectory, StreamKind
 from robots.workspace.workspace import Workspace
 
 _TWIST = 6
+# Steps in which ways out of a block are tried: along and about the axes of the tool, and of a joint.
+_TRIED_M, _TRIED_RAD, _TRIED_JOINT_RAD = 0.005, 0.03, 0.02
+_BLOCK_SHOWN_S = 10.0
 # Limits of a tool step: rotation speed, linear and angular acceleration.
 _STEP_TURN_RAD_S, _STEP_M_S2, _STEP_RAD_S2 = 0.5, 0.5, 2.0
 _SHORTEST_STEP_S = 0.1
@@ -44,7 +54,7 @@ _UNKNOWN_PART = "?"
 
 
 class JogMotions:
-    """Serves JogJoints, JogTool, StepJoints and StepTool, and subscribes to `<arm>/jog`.
+    """Serves JogJoints, JogTool, StepJoints, StepTool and PrepareJog; takes `<arm>/jog`, publishes `<arm>/jog_block`.
 
     Args:
         runner: The arm's motion runner.
@@ -58,6 +68,8 @@ class JogMotions:
         self._workspace = workspace
         self._run: JogRun | None = None
         self._bus: SkillBus | None = None
+        self._blocks: Topic[JogBlock] | None = None
+        self._hiding: asyncio.TimerHandle | None = None
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills under the arm's name."""
@@ -67,52 +79,97 @@ class JogMotions:
         bus.advertise_action(JogTool, self._jog_tool, namespace=name, exclusive=name)
         bus.advertise_action(StepJoints, self._step_joints, namespace=name, exclusive=name)
         bus.advertise_action(StepTool, self._step_tool, namespace=name, exclusive=name)
+        bus.advertise_service(PrepareJog, self._prepare, namespace=name)
         bus.topic(f"{name}/jog", JogCommand).subscribe_commands(self._take)
+        self._blocks = bus.topic(f"{name}/jog_block", JogBlock)
 
     def _take(self, command: JogCommand) -> None:
         if self._run is not None:
             self._run.take(command)
 
+    async def _prepare(self, request: PrepareJog) -> JogReady:
+        del request
+        clock = self._runner.clock
+        start_s = clock.now_s()
+        guard = self._guard(JogCollisionOptions(), lambda velocity, _: velocity, lambda joints: joints[None] * 0.0)
+        if guard is not None:
+            try:
+                await guard.open()
+            except FlexcellError as error:
+                raise SkillFailed(error.message, where=self._runner.name, hint=error.hint) from error
+            await guard.close()
+        return JogReady(waited_s=clock.now_s() - start_s)
+
     async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointJogFeedback]) -> JointMotionResult:
         runner = self._runner
-        guard = self._guard(goal.scene, lambda commanded, _: commanded)
-
-        def publish_feedback() -> None:
-            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
-
         width = runner.model.dof
+        guard = self._guard(goal.scene, lambda commanded, _: commanded, lambda _: np.eye(width) * _TRIED_JOINT_RAD)
         run = JogRun(
             goal,
             goal.velocity_rad_s,
             handle,
             clock=runner.clock,
             width=width,
-            to_command=lambda commanded: commanded,
+            to_command=lambda commanded, _: commanded,
             guard=guard,
         )
+
+        def publish_feedback() -> None:
+            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
+
         ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
 
     async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[ToolJogFeedback]) -> CartMotionResult:
         runner = self._runner
-        guard = self._guard(goal.scene, self._joint_velocity)
+
+        def to_command(velocity: Row, frame: Axes | None) -> Row:
+            axes = runner.frames.axes(frame or goal.frame, tool=runner.measured_tool())
+            return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
+
+        def steps(joints: Array) -> Array:
+            twists = np.diag([_TRIED_M] * 3 + [_TRIED_RAD] * 3)
+            return np.array(
+                [self._joint_velocity(np.array(to_command(tuple(twist), run.frame)), joints) for twist in twists]
+            )
+
+        guard = self._guard(goal.scene, self._joint_velocity, steps)
+        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
 
         def publish_feedback() -> None:
             handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
 
-        def to_command(velocity: Row) -> Row:
-            axes = runner.frames.axes(goal.frame, tool=runner.measured_tool())
-            return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
-
-        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
         ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
 
-    def _guard(self, rule: JogCollisionOptions, to_joints: ToJoints) -> JogGuard | None:
+    def _guard(
+        self, rule: JogCollisionOptions, to_joints: ToJoints, steps: Callable[[Array], Array]
+    ) -> JogGuard | None:
         if self._workspace is None or not rule.minded:
             return None
-        rule = self._with_held_part(rule, self._workspace)
-        return JogGuard(self._runner, self._workspace, rule=rule, to_joints=to_joints)
+        return JogGuard(
+            self._runner,
+            self._workspace,
+            rule=self._with_held_part(rule, self._workspace),
+            to_joints=to_joints,
+            directions_out=DirectionsOut(self._runner, steps),
+            publish=self._publish_block,
+        )
+
+    def _publish_block(self, block: JogBlock) -> None:
+        if self._hiding is not None:
+            self._hiding.cancel()
+            self._hiding = None
+        if self._blocks is not None and block != (self._blocks.latest or JogBlock(robot=block.robot)):
+            self._blocks.publish(block)
+
+    def _forget_block(self) -> None:
+        """Let go of a block some time after its jog, so that it can be read."""
+        block = self._blocks.latest if self._blocks is not None else None
+        if block is not None and block.first:
+            self._hiding = asyncio.get_running_loop().call_later(
+                _BLOCK_SHOWN_S, self._publish_block, JogBlock(robot=self._runner.name)
+            )
 
     def _with_held_part(self, rule: JogCollisionOptions, workspace: Workspace) -> JogCollisionOptions:
         """Return the options for an arm whose tool may hold a part: its own part is no obstacle for it.
@@ -152,24 +209,26 @@ class JogMotions:
         runner = self._runner
         runner.require_ready(handle)
         async with AsyncExitStack() as stack:
-            if guard is not None:
-                await runner.planned(handle, lambda _: guard.open())
-                stack.push_async_callback(guard.close)
-            else:
-                runner.accept(handle)
 
             def look(_stream: object) -> None:
                 run.look()
                 publish_feedback()
 
+            # Whoever learns that the goal is accepted may command at once.
             self._run = run
             try:
+                if guard is not None:
+                    await runner.planned(handle, lambda _: guard.open())
+                    stack.push_async_callback(guard.close)
+                else:
+                    runner.accept(handle)
                 return await runner.carry_out(
                     lambda: run.start(runner.port.stream(kind, watchdog_s=run.watchdog_s)), handle, look, mode="jogging"
                 )
             finally:
                 self._run = None
                 run.close()
+                self._forget_block()
 
     async def _free(self, planning: Awaitable[JointTrajectory], rule: JogCollisionOptions) -> JointTrajectory:
         """Return a planned collision-free step; raises RobotError if there is none."""

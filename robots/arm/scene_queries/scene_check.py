@@ -7,8 +7,9 @@ import msgspec
 from engine.errors import RobotError
 from engine.skills.jogging import JogCollisionOptions
 from robots.arm.scene_queries.path_planner import describe_contacts
-from robots.planning.request import PathCheck, PathCheckRequest
-from robots.port import JointTrajectory
+from robots.planning.request import PairDistanceRequest, PairDistances, PathCheck, PathCheckRequest
+from robots.planning.scene.planning_scene import NamePair, PlanningScene
+from robots.port import Array, JointTrajectory
 from robots.workspace.workspace import Workspace
 
 
@@ -39,12 +40,9 @@ class SceneCheck:
             RobotError: the planning process has ended.
             CellError: the scene is invalid.
         """
-        await self._workspace.ready()
-        scene = self._workspace.scene_for(self._arm)
-        touched = tuple((self._arm, name) for name in self._rule.may_touch)
         return await self._workspace.planners.check_path(
             PathCheckRequest(
-                scene=msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene,
+                scene=await self._current(),
                 arm=self._arm,
                 trajectory=trajectory,
                 from_s=0.0,
@@ -52,6 +50,25 @@ class SceneCheck:
                 margin_m=self._rule.margin_m,
             )
         )
+
+    async def distances(self, rows: Array, pair: NamePair) -> PairDistances:
+        """Return the distances of a pair at configurations (k, n) in the current scene; raises as `check` does."""
+        return await self._workspace.planners.pair_distances(
+            PairDistanceRequest(
+                scene=await self._current(),
+                arm=self._arm,
+                rows_rad=tuple(tuple(row) for row in rows.tolist()),
+                pair=pair,
+                occupancy=self._workspace.occupancy,
+                margin_m=self._rule.margin_m,
+            )
+        )
+
+    async def _current(self) -> PlanningScene:
+        await self._workspace.ready()
+        scene = self._workspace.scene_for(self._arm)
+        touched = tuple((self._arm, name) for name in self._rule.may_touch)
+        return msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene
 
     async def require_free(self, trajectory: JointTrajectory) -> None:
         """Return if the trajectory is collision-free.

@@ -9,6 +9,8 @@ from engine.skills.planning_scene import CollisionReport
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PlanAnswer,
@@ -66,6 +68,12 @@ class InlinePlanner:
     async def look(self, request: CollisionRequest) -> CollisionReport:
         """Return the collisions and the clearance of an arm in a configuration. Raises CellError."""
         result = self._planner.look(request)
+        await self._pass(LOOK_FIXED_S)
+        return result
+
+    async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations. Raises CellError."""
+        result = self._planner.pair_distances(request)
         await self._pass(LOOK_FIXED_S)
         return result
 

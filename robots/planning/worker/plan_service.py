@@ -9,6 +9,8 @@ from engine.skills.planning_scene import CollisionReport
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PlanAnswer,
@@ -55,6 +57,10 @@ class PlanService(Protocol):
 
     async def look(self, request: CollisionRequest) -> CollisionReport:
         """Return the collisions and the clearance of an arm in a configuration."""
+        ...
+
+    async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations."""
         ...
 
 

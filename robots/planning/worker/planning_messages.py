@@ -9,6 +9,8 @@ from robots.io.request_failure import RequestFailure
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PathPlan,
@@ -35,6 +37,8 @@ class CollisionReply(msgspec.Struct, frozen=True, kw_only=True, tag="collisions"
     report: CollisionReport
 
 
-PlanningRequest = WarmUpRequest | PlanRequest | PathCheckRequest | AttachedPartCheckRequest | CollisionRequest
+PlanningRequest = (
+    WarmUpRequest | PlanRequest | PathCheckRequest | AttachedPartCheckRequest | CollisionRequest | PairDistanceRequest
+)
 ToPlanner = PlanningRequest | CancelRequest
-FromPlanner = PlannerReady | PathPlan | PlanRefusal | PathCheck | CollisionReply | RequestFailure
+FromPlanner = PlannerReady | PathPlan | PlanRefusal | PathCheck | CollisionReply | PairDistances | RequestFailure

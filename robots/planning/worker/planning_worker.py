@@ -11,6 +11,8 @@ from robots.io.worker_process import WorkerProcess
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PathPlan,
@@ -109,6 +111,12 @@ class PlanningWorker:
         answer = await self._answer(request, _LOOK_S)
         assert isinstance(answer, CollisionReply)
         return answer.report
+
+    async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations. Raises as `plan` does."""
+        answer = await self._answer(request, _LOOK_S)
+        assert isinstance(answer, PairDistances)
+        return answer
 
     async def _path_check(self, request: PathCheckRequest | AttachedPartCheckRequest) -> PathCheck:
         answer = await self._answer(request, _LOOK_S)

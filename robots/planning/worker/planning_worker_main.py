@@ -18,6 +18,7 @@ from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
     JointGoal,
+    PairDistanceRequest,
     PathCheckRequest,
     PlanRequest,
 )
@@ -118,6 +119,8 @@ def _answer(planner: ScenePlanner, request: PlanningRequest, is_canceled: Callab
             return planner.check_attached_parts(request)
         case CollisionRequest():
             return CollisionReply(report=planner.look(request))
+        case PairDistanceRequest():
+            return planner.pair_distances(request)
 
 
 def warm_up(planner: ScenePlanner) -> None:

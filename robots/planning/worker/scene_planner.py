@@ -18,6 +18,8 @@ from robots.planning.planner_names import FAST, PLANNERS, STOMP, UNAVAILABLE_PLA
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PathGoal,
@@ -157,6 +159,18 @@ class ScenePlanner:
             ),
             distance_m=min(nearest.distance_m, FARTHEST_M),
             nearest=nearest.pair,
+        )
+
+    def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations; raises as `look` does."""
+        checker = self.prepared(
+            request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy
+        ).checker
+        rows = [validate_joints(row, checker) for row in request.rows_rad]
+        first = {request.pair, *(pair for row in rows[:1] for pair in checker.colliding_pairs(row))}
+        return PairDistances(
+            distance_m=tuple(-checker.depth(row, frozenset(request.pair)) for row in rows),
+            touches_another=tuple(not first.issuperset(checker.colliding_pairs(row)) for row in rows),
         )
 
     def prepared(

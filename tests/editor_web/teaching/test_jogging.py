@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.teaching_messages import StartJog
+from engine.bus import GoalHandle
 from engine.errors import BusError
 from engine.skills.goal_end import GoalEnd
 from tests.editor_web.fake_backend import TopicBus
@@ -25,7 +27,9 @@ class BrakingArm(TopicBus):
         self.may_rest = asyncio.Event()
         self.rested = False
 
-    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+    async def perform(
+        self, address: str, goal: object, *, on_sent: Callable[[GoalHandle[Any, Any]], None] | None = None
+    ) -> GoalEnd[Any]:
         self.moving.set()
         try:
             await asyncio.Event().wait()

@@ -10,14 +10,17 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus, SkillBus
+from engine.errors import SkillFailed
 from engine.messages import GripperState, Pose, Vector3
 from engine.messages.shapes import Box, Obstacle
 from engine.skill import Action
 from engine.skills.jogging import (
+    JogBlock,
     JogCollisionOptions,
     JogCommand,
     JogJoints,
     JogTool,
+    PrepareJog,
     StepJoints,
     StepTool,
 )
@@ -196,6 +199,41 @@ async def test_a_held_part_belongs_to_its_arm_and_never_blocks_it(step: Action[A
         assert not await blocked()
         await cell.bus.call(AttachPart(part="cube", robot="left"), to="cell")
         assert not await blocked()
+
+
+@pytest.mark.virtual
+async def test_a_block_names_both_bodies_their_distance_and_the_ways_that_take_them_apart() -> None:
+    """A wall 4 mm beside the hand: away from it leads out, along it does not."""
+    async with fake_cell() as cell:
+        at = await cell.bus.call(ForwardKinematics(), to="left")
+        x, y, z = at.xyz
+        await cell.bus.call(put("wall", (0.6, 0.02, 0.6), (x, y + 0.164, z)), to="cell")
+        blocks = cell.bus.topic("left/jog_block", JogBlock)
+        goal = JogTool(velocity=(0.0, 0.25, 0.0, 0.0, 0.0, 0.0), duration_s=0.4)
+        assert (await cell.bus.send_goal(goal, to="left").result()).status is GoalStatus.SUCCEEDED
+        block = blocks.latest
+        assert block is not None
+        assert {block.first.partition("/")[0], block.second} == {"left", "wall"}
+        nearest = await cell.bus.call(CheckCollision(robot="left"), to="cell")
+        assert block.distance_m == pytest.approx(nearest.distance_m, abs=1e-6)
+        directions = {(each.axis, each.sign) for each in block.directions_out}
+        assert (1, -1) in directions
+        assert directions.isdisjoint({(1, 1), (0, 1), (0, -1), (2, 1), (2, -1)})
+        away = JogTool(velocity=(0.0, -0.1, 0.0, 0.0, 0.0, 0.0), duration_s=0.4)
+        await cell.bus.send_goal(away, to="left").result()
+        assert blocks.latest == JogBlock(robot="left")
+
+
+@pytest.mark.virtual
+async def test_an_arm_is_prepared_for_its_first_jog_and_says_why_it_cannot_be() -> None:
+    async with fake_cell() as cell:
+        cell.planner.silent_s = 3.0
+        ready = await cell.bus.call(PrepareJog(), to="left")
+        assert ready.waited_s > 3.0
+        cell.planner.failing = "the planning process does not start"
+        with pytest.raises(SkillFailed, match="does not start"):
+            await cell.bus.call(PrepareJog(), to="left")
+        assert cell.cameras.required == 0
 
 
 async def jog_end(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], set[float]]:

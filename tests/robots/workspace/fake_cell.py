@@ -23,6 +23,8 @@ from robots.model.transform import RigidTransform
 from robots.planning.request import (
     AttachedPartCheckRequest,
     CollisionRequest,
+    PairDistanceRequest,
+    PairDistances,
     PathCheck,
     PathCheckRequest,
     PlanAnswer,
@@ -88,6 +90,11 @@ class FragilePlanner:
         """Look."""
         await self._fail()
         return await self._inner.look(request)
+
+    async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
+        """Return the distances of two bodies with an arm at several configurations."""
+        await self._fail()
+        return await self._inner.pair_distances(request)
 
     async def _fail(self) -> None:
         if self.silent_s:

@@ -11,6 +11,8 @@ import type {
   EntryPage,
   EntryRecord,
   GoalEnd,
+  JogBlockFrame,
+  JogReadiness,
   PrimitiveComparison,
   PreviewTaught,
   PlayBody,
@@ -47,6 +49,10 @@ export interface TeachStore {
   /** The arm that this page jogs. */
   readonly jogging: string
   readonly heldBy: string
+  /** Whether an arm can be jogged at once, of those that this page has asked to prepare. */
+  readonly readiness: Dict<JogReadiness>
+  /** What the jogged arm stands before; undefined for nothing. */
+  readonly block: JogBlockFrame | undefined
   readonly refused: Readonly<Partial<Record<RefusedFrame['what'], RefusedFrame>>>
 }
 
@@ -61,6 +67,8 @@ const NOTHING: TeachStore = {
   entries: 0,
   jogging: '',
   heldBy: '',
+  readiness: {},
+  block: undefined,
   refused: {},
 }
 
@@ -77,6 +85,11 @@ export function sendToServer(message: TeachingMessage): void {
 export function clearTeachRefusal(what: RefusedFrame['what']): void {
   const { [what]: _, ...others } = useTeach.getState().refused
   useTeach.setState({ refused: others })
+}
+
+/** Forget what the arm stood before: its directions out were of other axes. */
+export function forgetJogBlock(): void {
+  useTeach.setState({ block: undefined })
 }
 
 /** Keep the connection open for one more user; returns how to end that, with the last one the connection ends. */
@@ -122,7 +135,7 @@ class Connection {
     }
     opened.onclose = () => {
       if (this.socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isPreviewing: false })
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', readiness: {}, block: undefined, isPreviewing: false })
       this.retry = setTimeout(() => this.open(), RETRY_MS)
     }
   }
@@ -150,6 +163,12 @@ function take(message: TeachingFrame): void {
       break
     case 'jogging':
       useTeach.setState({ jogging: message.arm, heldBy: message.held_by })
+      break
+    case 'ready':
+      useTeach.setState({ readiness: { ...before.readiness, [message.arm]: message } })
+      break
+    case 'block':
+      useTeach.setState({ block: message.first ? message : undefined })
       break
     case 'refused':
       useTeach.setState({ refused: { ...before.refused, [message.what]: message } })

@@ -1150,6 +1150,30 @@ export interface InterruptedRun {
 /** The rates, from 0 to 1 (of a difference from -1), that the runs do not exclude. */
 export type Interval = readonly [number, number]
 
+/** What the arm that this page jogs stands before, and which directions lead out; no names for nothing. */
+export interface JogBlockFrame {
+  readonly k: "block"
+  readonly robot: string
+  readonly first: string
+  readonly second: string
+  readonly distance_m: number
+  readonly directions_out: readonly JogDirection[]
+}
+
+/** A direction of a jog: along (0 to 2) or about (3 to 5) an axis of the tool's frame, or a joint by its number. */
+export interface JogDirection {
+  readonly axis: number
+  readonly sign: number
+}
+
+/** Whether an arm can be jogged at once; not ready with a `reason` where its path cannot be checked. */
+export interface JogReadiness {
+  readonly k: "ready"
+  readonly arm: string
+  readonly ready: boolean
+  readonly reason: string
+}
+
 /** The arm that this page jogs, empty for none, and what limits its motion, as text. */
 export interface JogStatus {
   readonly k: "jogging"
@@ -1787,6 +1811,12 @@ export interface Pose {
   readonly frame: string
 }
 
+/** From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop. */
+export interface PrepareJogging {
+  readonly k: "prepare"
+  readonly arm: string
+}
+
 /** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
 export interface PreviewTaught {
   readonly k: "look"
@@ -2331,7 +2361,7 @@ export interface StartData {
   readonly obstacle: string
 }
 
-/** From the page: prepare to jog this arm, until `rest`. */
+/** From the page: a key goes down that jogs this arm, until `rest`. */
 export interface StartJog {
   readonly k: "jog"
   readonly arm: string
@@ -2388,7 +2418,7 @@ export interface StopEndpoint {
   readonly token: string
 }
 
-/** From the page: the key is up. */
+/** From the page: the key is up; a press during which the arm has not moved is executed for a moment. */
 export interface StopJog {
   readonly k: "rest"
 }
@@ -2880,6 +2910,6 @@ export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Sweeps
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | JogReadiness | JogBlockFrame | RefusedFrame
 
-export type TeachingMessage = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
+export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught

@@ -1,5 +1,5 @@
 /** What the page for teaching works out by itself: names, velocities, poses in words, what a change moves. */
-import type { Trace } from '../api/types'
+import type { JogBlockFrame, Trace } from '../api/types'
 
 export type Space = 'joints' | 'tool'
 export type Frame = 'world' | 'base' | 'tool'
@@ -188,4 +188,13 @@ function valueAt(curve: Curve, time_s: number): number {
 export function heldWords(mode: string | undefined, activity: string | undefined): string {
   if (mode === 'jogging') return 'It moves while this is held'
   return `Keep holding: it waits ${activity ? `(${activity})` : 'until its path can be checked'}`
+}
+
+/** What a jogged arm stands before, how near it is, and which of the directions `names` lead out. */
+export function blockWords(block: JogBlockFrame, names: readonly string[]): string {
+  const millimetres_away = (block.distance_m * 1000).toFixed(1)
+  const directions = block.directions_out.map((each) => `${names[each.axis] ?? each.axis + 1} ${each.sign > 0 ? 'plus' : 'minus'}`)
+  const out =
+    directions.length > 0 ? `Directions out: ${directions.join(', ')}.` : 'No direction leads out: lead the arm by hand, or jog its joints.'
+  return `${block.first} stands ${millimetres_away} mm before ${block.second}. ${out}`
 }

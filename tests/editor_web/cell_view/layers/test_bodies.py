@@ -8,6 +8,7 @@ import viser
 
 from editor_web.cell_view.layers.bodies import BodyLayer, body_node
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from engine.skills.jogging import JogBlock
 from tests.editor_web.fake_sights import description, frames_with_a_person, planned_path, scene_with_a_person
 
 
@@ -72,6 +73,20 @@ def test_the_two_bodies_that_would_touch_are_red_until_the_way_is_free(server: v
     bodies.draw(newest)
     assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "right/fore"}
     newest.put("left", planned_path("left", "moving"))
+    bodies.draw(newest)
+    assert colours(server) == plain
+
+
+def test_the_two_bodies_between_which_a_jog_stands_are_red_until_it_goes_free(server: viser.ViserServer) -> None:
+    bodies, newest = BodyLayer(server), messages_at(0.0)
+    for arm in ("left", "right"):
+        newest.put(arm, description(arm))
+    bodies.draw(newest)
+    plain = colours(server)
+    newest.put("left", JogBlock(robot="left", first="left/fore", second="tray_north", distance_m=0.005))
+    bodies.draw(newest)
+    assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "tray"}
+    newest.put("left", JogBlock(robot="left"))
     bodies.draw(newest)
     assert colours(server) == plain
 

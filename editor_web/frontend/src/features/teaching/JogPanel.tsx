@@ -3,9 +3,10 @@ import { lookup } from '../../document/dict'
 import { Button, Flex, Group, SegmentedControl, Slider, Stack, Switch, Text, UnstyledButton } from '@mantine/core'
 import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
-import { useDisabledReason, useTeach } from '../../api/teaching'
+import { forgetJogBlock, useDisabledReason, useTeach } from '../../api/teaching'
 import type { ArmInfo, ArmLive } from '../../api/types'
 import {
+  blockWords,
   degrees,
   heldWords,
   jogVelocity,
@@ -22,6 +23,7 @@ import { jogKey } from './jogKeys'
 import { ToolRow } from './ToolRow'
 import { useJog } from './useJog'
 import { usePadJog } from './usePadJog'
+import { usePreparedJog } from './usePreparedJog'
 import { useSteps } from './useSteps'
 
 const BUSY = new Set(['moving', 'guiding', 'direct', 'reflex', 'fault', 'disconnected'])
@@ -51,9 +53,18 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   const steps = useSteps()
   const jog = useJog(arm.name, space, frame)
   const hint = useId()
-  const off = useDisabledReason()
-  const obstacle = off ?? (jog.held || steps.isBusy ? undefined : busy(now))
   const rows = space === 'tool' ? toolRows(now) : jointRows(arm, now)
+  const off = useDisabledReason()
+  const block = useTeach((s) => s.block)
+  const prepared = usePreparedJog(arm.name)
+  const obstacle = off ?? (jog.held || steps.isBusy ? undefined : (busy(now) ?? prepared.obstacle))
+  const stands =
+    block?.robot === arm.name
+      ? blockWords(
+          block,
+          rows.map((row) => row.name),
+        )
+      : ''
   const [withPad, setWithPad] = useState(false)
   const isPadThere = usePadJog({ isOn: withPad, jog, space, share: share / 100, joints: arm.joint_names.length, obstacle })
 
@@ -81,7 +92,10 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
           size="xs"
           aria-label="Jog target"
           value={space}
-          onChange={(value) => setSpace(value)}
+          onChange={(value) => {
+            setSpace(value)
+            forgetJogBlock()
+          }}
           data={[
             { value: 'tool', label: 'Tool' },
             { value: 'joints', label: 'Joints' },
@@ -102,7 +116,10 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
             size="xs"
             aria-label="Along the axes of"
             value={frame}
-            onChange={(value) => setFrame(value)}
+            onChange={(value) => {
+              setFrame(value)
+              forgetJogBlock()
+            }}
             data={[
               { value: 'world', label: 'World' },
               { value: 'base', label: 'Base' },
@@ -196,7 +213,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
       <Text size="sm" c="dimmed" mih="1.5em" role="status" aria-label="State of jogging">
         {refusal
           ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
-          : heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : '')}
+          : stands || heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}
       </Text>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (

@@ -34,6 +34,7 @@ function taught(role = 'operator'): FakeSocket {
   const socket = server().socket('/teach/live')
   socket.accept()
   socket.tell({ k: 'arms', arms: [LEFT], can_push: false, frames: ['world'] })
+  socket.tell({ k: 'ready', arm: 'left', ready: true, reason: '' })
   return socket
 }
 
@@ -160,6 +161,7 @@ it('jogs as long as a button is held, and rests when it is let go', () => {
   fireEvent.keyDown(plus, { key: 'Enter' })
   fireEvent.keyDown(plus, { key: 'Enter', repeat: true })
   expect(socket.sent).toEqual([
+    { k: 'prepare', arm: 'left' },
     { k: 'jog', arm: 'left', space: 'tool', frame: 'world' },
     { k: 'go', velocity: [0, 0, expect.closeTo(0.05), 0, 0, 0] },
   ])
@@ -185,7 +187,7 @@ it.each([
   show(<JogPanel arm={LEFT} />)
   socket.tell(arm({ mode, activity }))
   fireEvent.keyDown(screen.getByRole('button', { name: 'Z plus' }), { key: 'Enter' })
-  expect(socket.sent).toEqual([])
+  expect(socket.sent).toEqual([{ k: 'prepare', arm: 'left' }])
   expect(screen.getByRole('status', { name: 'State of jogging' })).toHaveTextContent(words)
 })
 

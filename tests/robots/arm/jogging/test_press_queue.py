@@ -1,0 +1,76 @@
+"""Presses one after the other: each for its shortest time, none after its release for long, none of a silent page."""
+
+from __future__ import annotations
+
+import pytest
+
+from engine.skills.jogging import MOST_WAIT_S, JogCommand
+from robots.arm.jogging.press_queue import PressQueue
+
+WATCHDOG_S, LEAST_S = 0.12, 0.1
+UP, LEFT, STILL = (0.0, 0.0, 0.05), (0.0, 0.05, 0.0), (0.0, 0.0, 0.0)
+
+
+def press(velocity: tuple[float, ...]) -> JogCommand:
+    return JogCommand(velocity=velocity, least_s=LEAST_S)
+
+
+def at(queue: PressQueue, now_s: float) -> tuple[float, ...] | None:
+    current = queue.advance(now_s)
+    return current.velocity if current is not None else None
+
+
+def test_a_press_that_is_released_at_once_is_executed_for_its_shortest_time_from_when_it_moves() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    queue.take(JogCommand(velocity=STILL), 0.01)
+    current = queue.advance(0.3)
+    assert current is not None
+    current.moving_since_s = 0.3
+    assert (at(queue, 0.39), at(queue, 0.41)) == (UP, None)
+
+
+def test_presses_are_executed_in_their_order() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    queue.take(press(LEFT), 0.05)
+    queue.take(JogCommand(velocity=STILL), 0.06)
+    first = queue.advance(0.07)
+    assert first is not None
+    assert first.velocity == UP
+    first.moving_since_s = 0.07
+    assert (at(queue, 0.16), at(queue, 0.18)) == (UP, LEFT)
+
+
+def test_a_released_press_that_is_blocked_or_not_checked_in_time_is_dropped() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    queue.take(JogCommand(velocity=STILL), 0.01)
+    assert at(queue, 0.01 + MOST_WAIT_S - 0.01) == UP
+    assert at(queue, 0.01 + MOST_WAIT_S) is None
+    queue.take(press(LEFT), 1.0)
+    current = queue.advance(1.0)
+    assert current is not None
+    current.blocked = True
+    assert at(queue, 1.05) == LEFT
+    queue.take(JogCommand(velocity=STILL), 1.06)
+    assert at(queue, 1.06) is None
+
+
+@pytest.mark.parametrize("least_s", [0.0, LEAST_S])
+def test_a_held_press_without_commands_ends_with_the_watchdog(least_s: float) -> None:
+    """Nobody has released it: the page has fallen silent, so its shortest time does not count."""
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(JogCommand(velocity=UP, least_s=least_s), 0.0)
+    queue.take(JogCommand(velocity=UP), 0.04)
+    assert (at(queue, 0.04 + WATCHDOG_S - 0.01), at(queue, 0.04 + WATCHDOG_S)) == (UP, None)
+
+
+def test_a_plain_command_changes_the_held_press_and_ends_it_at_once() -> None:
+    """As before there were presses: a velocity without a shortest time is followed as it comes."""
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(JogCommand(velocity=UP), 0.0)
+    queue.take(JogCommand(velocity=LEFT), 0.05)
+    assert at(queue, 0.05) == LEFT
+    queue.take(JogCommand(velocity=STILL), 0.06)
+    assert at(queue, 0.06) is None
