@@ -4,7 +4,7 @@ import type { ReactNode } from 'react'
 import { Placed, useMovable } from '../components/Movable'
 import { Splitter } from '../components/Splitter'
 import { TabCount } from '../components/TabCount'
-import tabs from '../components/tabs.module.css'
+import tabClasses from '../components/tabs.module.css'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { Group, Panel as Pane, useDefaultLayout } from 'react-resizable-panels'
 import classes from './pages.module.css'
@@ -165,8 +165,8 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
     <Tabs
       value={shown}
       onChange={(value) => onTab((value ?? 'parameters') as Tab)}
-      className={tabs.tabs ?? ''}
-      classNames={{ list: tabs.list ?? '', tab: tabs.tab ?? '', panel: tabs.panel ?? '' }}
+      className={tabClasses.tabs ?? ''}
+      classNames={{ list: tabClasses.list ?? '', tab: tabClasses.tab ?? '', panel: tabClasses.panel ?? '' }}
       keepMounted
     >
       <Tabs.List>
