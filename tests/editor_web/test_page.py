@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -140,6 +141,25 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
         page.keyboard.press("ArrowLeft")
         page.keyboard.press("ArrowLeft")
         expect(tree.get_by_role("treeitem", name="approach")).to_have_attribute("aria-expanded", "false")
+
+
+def test_containers_are_collapsed_by_hand_and_by_what_is_active(visit: Visit, site: Site) -> None:
+    """One box stands for what is inside: it tells what is active there."""
+    site.backend.step_s = LASTING_S
+    site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
+    with visit(address(TRANSFER.id)) as page:
+        active = page.locator("[data-node=leaf][data-status=active]")
+        expect(active).to_have_count(2)
+        page.get_by_role("button", name="Collapse approach").click()
+        expect(active).to_have_count(1)
+        expect(active).to_contain_text("left, right")
+        page.get_by_role("button", name="Expand approach").click()
+        expect(active).to_have_count(2)
+        page.get_by_role("button", name="Collapse what is not active").click()
+        folded = page.get_by_role("button", name=re.compile("^Expand (?!all)"))
+        expect(folded).to_have_count(4)
+        page.get_by_role("button", name="Expand all").click()
+        expect(folded).to_have_count(0)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

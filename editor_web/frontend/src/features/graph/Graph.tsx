@@ -3,7 +3,15 @@ import { lookup, type Dict } from '../../document/dict'
 import '@xyflow/react/dist/style.css'
 import { ActionIcon, Box, Group, Loader, Tooltip } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
-import { IconArrowsMaximize, IconArrowsRightDown, IconFocus2, IconMinus, IconPlus } from '@tabler/icons-react'
+import {
+  IconArrowsMaximize,
+  IconArrowsMoveVertical,
+  IconArrowsRightDown,
+  IconFocus2,
+  IconFold,
+  IconMinus,
+  IconPlus,
+} from '@tabler/icons-react'
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
 import { useCallback, useEffect, useMemo, useState, type MouseEvent, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
@@ -18,7 +26,8 @@ import classes from './graph.module.css'
 import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
-import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
+import { ContainerNode, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
+import { useFolding, type Folding } from './useFolding'
 import { useLayout, type Flow, type LaidOut } from './useLayout'
 
 const NODE_TYPES = { leaf: withLowDetail(LeafNode), container: withLowDetail(ContainerNode), outcome: withLowDetail(OutcomeNodeShell) }
@@ -62,7 +71,9 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
   const [flow, setFlow] = useState<Flow>('AUTO')
   const [follows, setFollows] = useState(false)
   const pane = width > 0 && height > 0 ? { width, height } : undefined
-  const { laidOut, problem } = useLayout(root, flow, pane)
+  const fold = useFolding(root, shown)
+  const { laidOut, problem } = useLayout(fold.drawn, root, flow, pane)
+  const detail = useStore((s) => detailAt(s.transform[2]))
   const turned = laidOut?.direction === 'RIGHT' ? 'DOWN' : 'RIGHT'
   return (
     <Panel
@@ -72,11 +83,11 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
         <>
           {breadcrumb}
           <Box flex={1} />
-          <CanvasTools onTurn={() => setFlow(turned)} follows={follows} onFollow={() => setFollows(!follows)} />
+          <CanvasTools onTurn={() => setFlow(turned)} follows={follows} onFollow={() => setFollows(!follows)} fold={fold} />
         </>
       }
     >
-      <div className={classes.graph} data-graph ref={ref}>
+      <div className={classes.graph} data-graph data-detail={detail} ref={ref}>
         <ArrowHeads />
         {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
         {!laidOut && !problem && (
@@ -86,15 +97,17 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
           </Group>
         )}
         {laidOut && (
-          <Drawn
-            laidOut={laidOut}
-            pane={`${width}x${height}`}
-            selected={selected}
-            onSelect={onSelect}
-            shown={shown}
-            follows={follows}
-            {...(behavior === undefined ? {} : { behavior })}
-          />
+          <FoldContext value={fold.toggle}>
+            <Drawn
+              laidOut={laidOut}
+              pane={`${width}x${height}`}
+              selected={selected}
+              onSelect={onSelect}
+              shown={shown}
+              follows={follows}
+              {...(behavior === undefined ? {} : { behavior })}
+            />
+          </FoldContext>
         )}
       </div>
     </Panel>
@@ -186,19 +199,34 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: 
   )
 }
 
+/** What can be read at a zoom: everything, names only, or names that are the larger. */
+function detailAt(zoom: number): 'all' | 'names' | 'far' {
+  if (zoom >= 0.62) return 'all'
+  return zoom >= 0.4 ? 'names' : 'far'
+}
+
 interface CanvasToolsProps {
   readonly onTurn: () => void
   readonly follows: boolean
   readonly onFollow: () => void
+  readonly fold: Folding
 }
 
-function CanvasTools({ onTurn, follows, onFollow }: CanvasToolsProps) {
+function CanvasTools({ onTurn, follows, onFollow, fold }: CanvasToolsProps) {
   const { fitView, zoomIn, zoomOut } = useReactFlow()
   return (
     <Group gap={2} wrap="nowrap">
       <Tool label="Follow the active node" onClick={onFollow} pressed={follows}>
         <IconFocus2 size={16} />
       </Tool>
+      <Tool label="Collapse what is not active" onClick={fold.toggleInactive} pressed={fold.hidesInactive}>
+        <IconFold size={16} />
+      </Tool>
+      {fold.hasFolded && (
+        <Tool label="Expand all" onClick={fold.expandAll}>
+          <IconArrowsMoveVertical size={16} />
+        </Tool>
+      )}
       <Tool label="Zoom in" onClick={() => void zoomIn({ duration: 150 })}>
         <IconPlus size={16} />
       </Tool>

@@ -1,13 +1,17 @@
 /** One node on the canvas: a leaf, or a container with its children drawn inside. */
 import { Handle, Position, type NodeProps } from '@xyflow/react'
-import { IconArrowsSplit2, IconBox, IconFileImport, IconLogout, IconSitemap } from '@tabler/icons-react'
-import { memo } from 'react'
+import { UnstyledButton } from '@mantine/core'
+import { IconArrowsSplit2, IconBox, IconChevronDown, IconChevronRight, IconFileImport, IconLogout, IconSitemap } from '@tabler/icons-react'
+import { createContext, Fragment, memo, useContext } from 'react'
+import { useLive } from '../../api/live'
 import { useNodeLive, useNodePart } from '../../api/liveParts'
 import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
 import { StatusIcon } from '../../components/StatusIcon'
 import { transitionId } from '../../document/edgeId'
+import { nameOfPath, pathsTo } from '../../document/path'
+import { activeLeaves } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
 import { disabledText } from '../../document/editing/disabling'
 import { duration } from '../../document/time'
@@ -21,6 +25,9 @@ const KIND_ICONS: Record<string, typeof IconBox> = {
   concurrency: IconArrowsSplit2,
   behavior: IconFileImport,
 }
+
+/** Folds a container by its path, or unfolds it. */
+export const FoldContext = createContext<((path: string) => void) | undefined>(undefined)
 
 export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps<StepNode>) {
   const live = useNodeLive(id)
@@ -40,7 +47,8 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
       <span key={live?.visits ?? 0} className={live && live.visits > 0 ? classes.blink : undefined} />
       <div className={classes.head}>
         <StatusIcon status={status} />
-        <span className={classes.name}>{data.node.name}</span>
+        <Name name={data.node.name} />
+        {data.isFolded && <Fold path={id} name={data.node.name} isFolded />}
         {live && live.visits > 1 && <span className={classes.visits}>×{live.visits}</span>}
       </div>
       <div className={classes.title}>
@@ -48,6 +56,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
       </div>
       <div className={classes.live}>
         <LiveText live={live} />
+        {data.isFolded && <ActiveInside path={id} />}
         <HeldText path={id} />
         <GoalLine path={id} />
       </div>
@@ -75,7 +84,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       <Marks path={id} />
       <div className={classes.head}>
         <Icon size={16} color="var(--quiet)" style={{ flex: 'none' }} aria-hidden />
-        <span className={classes.name}>{node.name}</span>
+        <Name name={node.name} />
         <span className={classes.kind}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
         <span style={{ flex: 1 }} />
         <HeldText path={id} />
@@ -83,6 +92,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
         <span className={classes.live}>
           <LiveText live={live} />
         </span>
+        {data.machine && <Fold path={id} name={node.name} isFolded={false} />}
       </div>
       <div style={{ paddingInline: 14 }}>
         {node.conditions.length > 0 && (
@@ -95,6 +105,44 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
     </div>
   )
 })
+
+/** The name of a node, which may go on in a second line after an underscore. */
+function Name({ name }: { name: string }) {
+  return (
+    <span className={classes.name}>
+      {name.split('_').map((part, index) => (
+        <Fragment key={index}>
+          {index > 0 && (
+            <>
+              _<wbr />
+            </>
+          )}
+          {part}
+        </Fragment>
+      ))}
+    </span>
+  )
+}
+
+/** Folds a container, or unfolds it. */
+function Fold({ path, name, isFolded }: { path: string; name: string; isFolded: boolean }) {
+  const toggle = useContext(FoldContext)
+  if (!toggle) return null
+  const Icon = isFolded ? IconChevronRight : IconChevronDown
+  return (
+    <UnstyledButton
+      className={`${classes.fold} nodrag`}
+      aria-label={`${isFolded ? 'Expand' : 'Collapse'} ${name}`}
+      aria-expanded={!isFolded}
+      onClick={(event) => {
+        event.stopPropagation()
+        toggle(path)
+      }}
+    >
+      <Icon size={16} aria-hidden />
+    </UnstyledButton>
+  )
+}
 
 /** The outcomes that are written here instead of drawn; the one that was taken is lit. */
 function Exits({ data }: { data: StepNode['data'] }) {
@@ -115,6 +163,17 @@ function Exits({ data }: { data: StepNode['data'] }) {
       ))}
     </div>
   )
+}
+
+/** What is active inside a folded container: `grasp, lift`. */
+function ActiveInside({ path }: { path: string }) {
+  const names = useLive((s) =>
+    activeLeaves(s.nodes)
+      .filter((leaf) => pathsTo(leaf).includes(path))
+      .map(nameOfPath)
+      .join(', '),
+  )
+  return <span className={classes.quiet}>{names}</span>
 }
 
 function LiveText({ live }: { live: NodeLive | undefined }) {

@@ -9,7 +9,7 @@ import { flatten, isContainer, kindLabel } from '../../document/tree'
 import type { LaidOut } from './useLayout'
 
 export type StepNode = Node<
-  { node: GraphNode; isInitial: boolean; isPassedOver: boolean; machine: string; exits: readonly Exit[] },
+  { node: GraphNode; isInitial: boolean; isPassedOver: boolean; isFolded: boolean; machine: string; exits: readonly Exit[] },
   'leaf' | 'container'
 >
 export type OutcomeNode = Node<{ machine: string; outcome: string }, 'outcome'>
@@ -17,15 +17,28 @@ export type CanvasNode = StepNode | OutcomeNode
 export type CourseEdge = Edge<{ course: Course }, 'course'>
 
 /** All nodes, parents before children. */
-export function canvasNodes({ root, layout }: LaidOut): CanvasNode[] {
+export function canvasNodes({ root, whole, layout }: LaidOut): CanvasNode[] {
   const all = flatten(root)
+  const containers = new Set(
+    root === whole
+      ? []
+      : flatten(whole)
+          .filter(isContainer)
+          .map((node) => node.path),
+  )
   const parents = new Map(all.flatMap((node) => node.children.map((child) => [child, node] as const)))
   const passedOver = new Set<GraphNode>()
   for (const node of all) {
     const parent = parents.get(node)
     if (node.disabled !== false || (parent && passedOver.has(parent))) passedOver.add(node)
   }
-  return all.flatMap((node) => [step(node, parents.get(node), layout, passedOver.has(node)), ...outcomes(node, layout)])
+  return all.flatMap((node) => [
+    step(node, parents.get(node), layout, {
+      isPassedOver: passedOver.has(node),
+      isFolded: !isContainer(node) && containers.has(node.path),
+    }),
+    ...outcomes(node, layout),
+  ])
 }
 
 type Boxes = LaidOut['layout']
@@ -44,7 +57,12 @@ function measured({ width, height }: Size): Pick<CanvasNode, 'width' | 'height' 
   }
 }
 
-function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes, isPassedOver: boolean): StepNode {
+function step(
+  node: GraphNode,
+  parent: GraphNode | undefined,
+  layout: Boxes,
+  drawn: Pick<StepNode['data'], 'isPassedOver' | 'isFolded'>,
+): StepNode {
   const box = layout.boxes.get(node.path) ?? { x: 0, y: 0, ...layout.size }
   return {
     id: node.path,
@@ -54,12 +72,12 @@ function step(node: GraphNode, parent: GraphNode | undefined, layout: Boxes, isP
     data: {
       node,
       isInitial: parent?.initial === node.name,
-      isPassedOver,
+      ...drawn,
       machine: parent?.path ?? '',
       exits: exitsOf(parent, node.name),
     },
     ...(parent ? { parentId: parent.path } : {}),
-    ariaLabel: `${kindLabel(node.kind)} ${node.name}${node.disabled === false ? '' : `, ${disabledText(node.disabled)}`}${node.title ? `, runs ${node.title}` : ''}`,
+    ariaLabel: `${kindLabel(node.kind)} ${node.name}${drawn.isFolded ? ', collapsed' : ''}${node.disabled === false ? '' : `, ${disabledText(node.disabled)}`}${node.title && !drawn.isFolded ? `, runs ${node.title}` : ''}`,
     sourcePosition: Position.Right,
     targetPosition: Position.Left,
   }

@@ -8,14 +8,18 @@ import { flatten } from '../../document/tree'
 import { layOutByElk } from '../../components/elk'
 
 export interface LaidOut {
+  /** The behavior as it is drawn, perhaps with folded containers. */
   readonly root: GraphNode
+  /** The whole behavior. */
+  readonly whole: GraphNode
   readonly layout: Layout
   readonly direction: Direction
 }
 
 export type Flow = Direction | 'AUTO'
 
-export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
+/** Lays `root` out, which is `whole` with containers folded; until that is done the layout of before stays. */
+export function useLayout(root: GraphNode, whole: GraphNode, flow: Flow, pane: Size | undefined) {
   const [laidOut, setLaidOut] = useState<LaidOut>()
   const [problem, setProblem] = useState<string>()
   const measured = pane !== undefined
@@ -35,7 +39,7 @@ export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
       const best = all.reduce((a, b) => (zoom(b.layout.size, area) > zoom(a.layout.size, area) * 1.05 ? b : a))
       const chosen = isLarge ? await inStyle(best.style, layOutByElk) : best
       performance.measure('flexcell:layout', { start: begun })
-      if (current) setLaidOut({ root, direction: chosen.style.direction, layout: chosen.layout })
+      if (current) setLaidOut({ root, whole, direction: chosen.style.direction, layout: chosen.layout })
     }
     if (measured) {
       run().catch((error: unknown) => current && setProblem(error instanceof Error ? error.message : String(error)))
@@ -44,9 +48,9 @@ export function useLayout(root: GraphNode, flow: Flow, pane: Size | undefined) {
       current = false
     }
     // oxlint-disable-next-line react/exhaustive-deps -- the pane counts by its rough size only
-  }, [root, flow, measured, size])
+  }, [root, whole, flow, measured, size])
 
-  return { laidOut: laidOut?.root === root ? laidOut : undefined, problem }
+  return { laidOut: laidOut?.whole === whole ? laidOut : undefined, problem }
 }
 
 /** With more nodes than this the engine is asked once. */
