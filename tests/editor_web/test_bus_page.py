@@ -169,11 +169,11 @@ def test_the_bus_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme)
     with at_bus(browser, shop, scheme=scheme) as page:
         entry(page, "joint_state").click()
         expect(page.get_by_role("list", name="Latest message of plant/joint_state")).to_be_visible()
-        require_accessible(page, "topics", part=".dock")
+        require_accessible(page, "topics", part="section[aria-label=Bus]")
         page.get_by_label("Part of the bus").get_by_text("Actions", exact=True).click()
         entry(page, "travel").click()
         expect(page.get_by_role("form", name="Request to plant/travel")).to_be_visible()
-        require_accessible(page, "actions", part=".dock")
+        require_accessible(page, "actions", part="section[aria-label=Bus]")
 
 
 def test_on_a_phone_the_list_gives_way_to_what_is_chosen(browser: Browser, shop: Workshop) -> None:

@@ -100,8 +100,8 @@ def test_the_data_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme
         page.get_by_role("button", name="Start").click()
         expect(page.get_by_role("region", name="Behavior")).to_contain_text("root/count")
         expect(page.get_by_role("progressbar", name="Progress of plant/travel")).to_be_visible()
-        require_accessible(page, "data", part=".dock")
-        require_accessible(page, "goal", part=".graph")
+        require_accessible(page, "data", part="section[aria-label=Data]")
+        require_accessible(page, "goal", part="[data-graph]")
 
 
 def test_the_data_on_a_phone(browser: Browser, shop: Workshop) -> None:

@@ -90,7 +90,7 @@ def test_two_states_are_built_from_nothing_by_keyboard_only(browser: Browser, sh
         expect(page.get_by_placeholder("Which outcome …")).to_be_focused()
         keys.press("Enter")
         expect(page.get_by_placeholder("Which outcome …")).to_have_count(0)
-        expect(page.locator(".choice-input")).to_be_focused()
+        expect(page.locator("dialog[open]").get_by_role("combobox")).to_be_focused()
         keys.type("finished")
         keys.press("Enter")
         expect(page.locator("[data-outcome][data-loose]")).to_have_count(0)

@@ -157,7 +157,7 @@ def test_the_curves_are_accessible(browser: Browser, shop: Workshop, scheme: Sch
     with at_plots(browser, shop, scheme=scheme) as page:
         choose_joints(page)
         expect(page.get_by_role("list", name="Curves")).to_contain_text("0.5 rad")
-        require_accessible(page, "plots", part=".dock")
+        require_accessible(page, "plots", part="section[aria-label=Plots]")
 
 
 def test_curves_on_a_phone(browser: Browser, shop: Workshop) -> None:

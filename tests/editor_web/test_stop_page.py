@@ -61,7 +61,7 @@ def test_stop_goes_through_while_the_engine_is_frozen(browser: Browser, tmp_path
             expect(stop_status(page)).to_contain_text("All arms at rest")
             expect(stop_status(page)).to_contain_text("Engine does not answer (silent since ")
             expect(stop_status(page)).to_contain_text("arms are stopped by their controller")
-            require_accessible(page, "a stop without the engine", part=".stop")
+            require_accessible(page, "a stop without the engine", part="[aria-label='Stop of the cell']")
         finally:
             os.kill(server.pid, signal.SIGCONT)
         expect(stop_status(page)).not_to_contain_text("Engine does not answer")
@@ -105,7 +105,7 @@ def test_stop_goes_through_after_the_engine_has_died(browser: Browser, tmp_path:
         alarm = stop_status(page).get_by_role("alert")
         expect(alarm).to_contain_text("STOP has failed")
         expect(alarm).to_contain_text("Press the emergency stop at the cell")
-        require_accessible(page, "a stop that failed", part=".stop")
+        require_accessible(page, "a stop that failed", part="[aria-label='Stop of the cell']")
 
 
 def test_a_page_that_is_left_before_the_answer_gives_stop_again(
@@ -236,7 +236,7 @@ def test_the_key_of_stop_works_in_the_3d_view_and_for_nobody_else(
 
 def view_of(page: Page) -> Frame:
     """The frame that draws the cell, once it is there."""
-    element = page.wait_for_selector("iframe.cell-frame")
+    element = page.wait_for_selector("iframe[title='3D view of the cell']")
     assert element is not None
     frame = element.content_frame()
     assert frame is not None
