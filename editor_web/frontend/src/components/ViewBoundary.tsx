@@ -1,6 +1,7 @@
 /** Keeps a view that fails from taking others with it: says what failed, tries again, hands out the details. */
 import { Button, Code, Group, Stack, Text } from '@mantine/core'
-import { Component, useState, type ErrorInfo, type ReactNode } from 'react'
+import { QueryClientContext } from '@tanstack/react-query'
+import { Component, useContext, useEffect, useState, type ErrorInfo, type ReactNode } from 'react'
 import { forgetFailedLoads } from './lazyView'
 
 interface ViewBoundaryProps {
@@ -54,6 +55,9 @@ interface FailedViewProps {
 function FailedView({ name, failure, onAgain }: FailedViewProps) {
   const [copied, setCopied] = useState<'no' | 'yes' | 'refused'>('no')
   const details = detailsOf(name, failure)
+  const client = useContext(QueryClientContext)
+  // An answer that cannot be shown is not shown again from the cache: it is asked for anew.
+  useEffect(() => client?.removeQueries({ type: 'inactive' }), [client])
 
   function copy(): void {
     navigator.clipboard.writeText(details).then(
