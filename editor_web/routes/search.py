@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Annotated
 
 from fastapi import Query
@@ -12,7 +12,7 @@ from editor_web.http_bodies.document_bodies import EntryName
 from editor_web.routes.catalogue import entry_names
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.cell import CellItem, items_of_cell
+from engine.cell import CellItem, named_items
 from engine.library import NameHit, behavior_names, search_names
 from engine.runtime.history import RunView
 
@@ -30,7 +30,7 @@ async def search(services: ServicesOf, text: Annotated[str, Query(max_length=200
 
     def found() -> tuple[NameHit, ...]:
         names = [*behavior_names(backend.behaviors()), *_of_entries(entries), *_of_runs(runs)]
-        names += _of_items(items_of_cell(backend.cell.document, name=backend.cell_name, topics=topics).items)
+        names += _of_items(named_items(backend.cell.document, topics=topics))
         return search_names(text, names, limit=_MOST)
 
     return await run_in_threadpool(found)
@@ -47,7 +47,7 @@ def _of_runs(runs: tuple[RunView, ...]) -> Iterator[NameHit]:
         yield NameHit(kind="run", id=run.id, title=run.behavior.rpartition("/")[2], detail=detail)
 
 
-def _of_items(items: tuple[CellItem, ...]) -> Iterator[NameHit]:
+def _of_items(items: Iterable[CellItem]) -> Iterator[NameHit]:
     for item in items:
         yield NameHit(kind="item", id=item.path, title=item.name, detail=f"{item.path} {item.kind} {item.model}")
         for topic in item.topics:

@@ -14,6 +14,7 @@ _HOMES = {
     "RobotSummary": "engine.cell.robot_models",
     "ToolKind": "engine.cell.tool_kind",
     "items_of_cell": "engine.cell.cell_items",
+    "named_items": "engine.cell.cell_items",
     "tool_kinds": "engine.cell.robot_models",
 }
 

@@ -1,7 +1,7 @@
 # The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
 from engine.cell.cell_connection import CellConnection
-from engine.cell.cell_items import CellItem, CellItems, items_of_cell
+from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_items
 from engine.cell.open_cell import OpenCell
 from engine.cell.robot_models import RobotModels, RobotSummary, tool_kinds
 from engine.cell.tool_kind import ToolKind
@@ -15,5 +15,6 @@ __all__ = [
     "RobotSummary",
     "ToolKind",
     "items_of_cell",
+    "named_items",
     "tool_kinds",
 ]

@@ -50,6 +50,13 @@ class CellItems(msgspec.Struct, frozen=True, kw_only=True):
     items: tuple[CellItem, ...]
 
 
+def named_items(cell: Cell | None, *, topics: Iterable[str] = ()) -> Iterator[CellItem]:
+    """Yield the items of an open cell without their lines, for which the document would have to be read again."""
+    known = tuple(sorted(topics))
+    for item in _items(cell.document) if cell is not None else ():
+        yield msgspec.structs.replace(item, topics=_topics(item, known))
+
+
 def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -> CellItems:
     """Return the items of an open cell.
 
@@ -61,10 +68,8 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
     if cell is None:
         return CellItems(cell=name, description="", file="", changed=False, items=())
     now, lines = _read(cell)
-    known = tuple(sorted(topics))
     items = tuple(
-        msgspec.structs.replace(item, topics=_topics(item, known), **_excerpt(item.path, now, lines))
-        for item in _items(cell.document)
+        msgspec.structs.replace(item, **_excerpt(item.path, now, lines)) for item in named_items(cell, topics=topics)
     )
     return CellItems(
         cell=name,
