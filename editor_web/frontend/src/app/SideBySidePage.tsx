@@ -70,6 +70,25 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
   )
 }
 
+function ColumnHead({ children }: { readonly children: ReactNode }) {
+  return (
+    <Flex
+      component="header"
+      wrap="wrap"
+      align="center"
+      rowGap="4xs"
+      columnGap="xs"
+      mih={46}
+      px="sm"
+      py="3xs"
+      fz="0.84rem"
+      style={{ borderBottom: '1px solid var(--line)' }}
+    >
+      {children}
+    </Flex>
+  )
+}
+
 type Side = 'left' | 'right'
 
 interface ColumnProps {
@@ -97,20 +116,7 @@ function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
   }
   return (
     <section className={styles.column} aria-label={`Run on the ${side}`}>
-      <Flex
-        component="header"
-        wrap="wrap"
-        align="center"
-        rowGap="4xs"
-        columnGap="xs"
-        mih={46}
-        px="sm"
-        py="3xs"
-        fz="0.84rem"
-        style={{ borderBottom: '1px solid var(--line)' }}
-      >
-        {choice}
-      </Flex>
+      <ColumnHead>{choice}</ColumnHead>
       {knowsRuns && (
         <Empty icon={<IconLayoutColumns size={26} stroke={1.4} aria-hidden />} title="No run is shown here">
           {id ? 'This server knows no such run; choose another one.' : 'Choose one.'}
@@ -170,25 +176,14 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
 
   return (
     <section className={styles.column} aria-label={`Run on the ${side}`}>
-      <Flex
-        component="header"
-        wrap="wrap"
-        align="center"
-        rowGap="4xs"
-        columnGap="xs"
-        mih={46}
-        px="sm"
-        py="3xs"
-        fz="0.84rem"
-        style={{ borderBottom: '1px solid var(--line)' }}
-      >
+      <ColumnHead>
         {choice}
         <Box flex={1} />
         <PageLink href={runHref(run.id)} onOpen={onOpen}>
           Whole page
         </PageLink>
         {isActive(run) && <StopRun commands={commands} />}
-      </Flex>
+      </ColumnHead>
       {isActive(run) && <RunBar run={run} commands={commands} of={name} />}
       <StatusRow run={run} root={root} commands={commands} onShow={show} of={name} />
       <Group orientation="vertical" style={{ flex: 1, minHeight: 0 }}>
