@@ -10,7 +10,15 @@ const thirdParty = notices()
 
 export default defineConfig({
   plugins: [react(), thirdParty.page()],
-  build: { outDir: '../static', emptyOutDir: true, target: 'es2023', chunkSizeWarningLimit: 1600, manifest: true },
+  build: {
+    outDir: '../static',
+    emptyOutDir: true,
+    target: 'es2023',
+    // The first of each that know light-dark(): what stands in for it needs a colour scheme that is written out.
+    cssTarget: ['chrome123', 'firefox120', 'safari17.5'],
+    chunkSizeWarningLimit: 1600,
+    manifest: true,
+  },
   worker: { format: 'es', plugins: () => [thirdParty.worker()] },
   server: {
     proxy: {

@@ -19,7 +19,6 @@ import { ShowMenu } from '../features/cell/ShowMenu'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import classes from './pages.module.css'
 import { cellHref, TEACH_HREF } from './route'
 
 interface CellPageProps {
@@ -91,7 +90,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
       {isNarrow ? (
         <OpenedTabs label="Cell" bodies={{ Items: items, Details: details, '3D view': view }} asked={asked} />
       ) : (
-        <Group orientation="horizontal" className={classes.work}>
+        <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
           <Pane id="cell-items" defaultSize="30%" minSize="18%">
             {items}
           </Pane>

@@ -1,5 +1,5 @@
 /** Two past runs compared: aligned visits, the first divergence, and what differs of one visit or of the whole. */
-import { ActionIcon, Tabs, Tooltip } from '@mantine/core'
+import { ActionIcon, SimpleGrid, Stack, Tabs, Tooltip } from '@mantine/core'
 import { IconArrowsExchange } from '@tabler/icons-react'
 import { Suspense, useEffect, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
@@ -15,13 +15,11 @@ import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { dataOf, indexAt, placeOf, type Side } from '../document/comparison'
 import { ComparedRun } from '../features/comparison/ComparedRun'
-import styles from '../features/comparison/comparison.module.css'
 import { FirstDivergence } from '../features/comparison/FirstDivergence'
 import { NodeDurations } from '../features/comparison/NodeDurations'
 import { Settings } from '../features/comparison/Settings'
 import { VisitDetails } from '../features/comparison/VisitDetails'
 import { VisitTable } from '../features/comparison/VisitTable'
-import classes from './pages.module.css'
 import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
 
 const ComparedCurves = lazyView(async () => (await import('./ComparedCurves')).ComparedCurves)
@@ -75,7 +73,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
   const swapped = compareHref(right, left)
   const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
   const details = (
-    <Tabs defaultValue="visit" keepMounted={false} className={styles.tabs ?? ''}>
+    <Tabs defaultValue="visit" keepMounted={false}>
       <Tabs.List>
         <Tabs.Tab value="visit">Visit</Tabs.Tab>
         <Tabs.Tab value="durations">Durations</Tabs.Tab>
@@ -98,7 +96,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
       <Tabs.Panel value="settings">
         <Settings settings={found.settings} documents={found.documents} />
       </Tabs.Panel>
-      <Tabs.Panel value="curves" className={styles.curves ?? ''}>
+      <Tabs.Panel value="curves">
         <Suspense fallback={null}>
           <ComparedCurves left={left} right={right} found={found} visit={visit} />
         </Suspense>
@@ -106,7 +104,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
     </Tabs>
   )
   return (
-    <div className={styles.page}>
+    <Stack gap={0} flex={1} mih={0}>
       <PageHead title="Compare runs">
         <Tooltip label="Swap left and right">
           <ActionIcon variant="subtle" color="gray" aria-label="Swap left and right" onClick={() => onOpen(swapped)}>
@@ -114,12 +112,12 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
           </ActionIcon>
         </Tooltip>
       </PageHead>
-      <div className={styles.runs}>
+      <SimpleGrid cols={2} spacing={1} bg="var(--line)" style={{ borderBottom: '1px solid var(--line)' }}>
         <ComparedRun side="left" run={found.left} href={hrefAt('left')} onOpen={() => onOpen(hrefAt('left'))} />
         <ComparedRun side="right" run={found.right} href={hrefAt('right')} onOpen={() => onOpen(hrefAt('right'))} />
-      </div>
+      </SimpleGrid>
       <FirstDivergence divergence={found.divergence} onShow={() => setSelected(found.divergence?.index)} />
-      <Group orientation={isNarrow ? 'vertical' : 'horizontal'} className={classes.work}>
+      <Group orientation={isNarrow ? 'vertical' : 'horizontal'} style={{ flex: 1, minHeight: 0 }}>
         <Pane id="visits" defaultSize="58%" minSize="25%">
           <ViewBoundary name="Visits">{table}</ViewBoundary>
         </Pane>
@@ -128,7 +126,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
           <ViewBoundary name="Details">{details}</ViewBoundary>
         </Pane>
       </Group>
-    </div>
+    </Stack>
   )
 }
 

@@ -56,12 +56,18 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
       </Text>
       {cellName && (
         <Box visibleFrom="md" pl="sm" style={{ borderInlineStart: '1px solid var(--line)' }}>
-          <PageLink href={CELL_HREF} className={classes.link} title="What the cell consists of" isCurrent={isCell} onOpen={onCell}>
+          <PageLink
+            href={CELL_HREF}
+            className={`${classes.link} pick-row`}
+            title="What the cell consists of"
+            isCurrent={isCell}
+            onOpen={onCell}
+          >
             {cellName}
           </PageLink>
         </Box>
       )}
-      <PageLink href={TEACH_HREF} className={classes.link} isCurrent={isTeaching} label="Teach" onOpen={onTeach}>
+      <PageLink href={TEACH_HREF} className={`${classes.link} pick-row`} isCurrent={isTeaching} label="Teach" onOpen={onTeach}>
         <IconHandFinger size={16} aria-hidden />
         <Text span inherit visibleFrom="xs">
           Teach
@@ -101,7 +107,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
             <RunTime run={named} />
           </Text>
           {others > 0 && (
-            <PageLink href={RUNS_HREF} className={classes.others} title="All active runs" onOpen={onRuns}>
+            <PageLink href={RUNS_HREF} className={classes.link} title="All active runs" onOpen={onRuns}>
               + {others}{' '}
               <Text span inherit visibleFrom="xs">
                 other{others > 1 && 's'}

@@ -28,7 +28,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
   const runs = useLive((s) => s.runs)
   const role = useLive((s) => s.role)
   return (
-    <div className={classes.home}>
+    <Box className={classes.pair ?? ''} data-halves __vars={{ '--widths': 'minmax(0, 3fr) minmax(340px, 2fr)' }}>
       <VisuallyHidden component="h1">The cell</VisuallyHidden>
       <Panel title="Cell" hasIcons tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
         <CellFrame />
@@ -76,7 +76,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
           </Table.ScrollContainer>
         )}
       </Panel>
-    </div>
+    </Box>
   )
 }
 

@@ -1,5 +1,5 @@
 /** Two runs beside one another, each with its commands, graph and log. */
-import { Box, Flex, NativeSelect, VisuallyHidden } from '@mantine/core'
+import { Box, Divider, Flex, NativeSelect, Stack, VisuallyHidden } from '@mantine/core'
 import { IconLayoutColumns } from '@tabler/icons-react'
 import { useEffect, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
@@ -22,9 +22,7 @@ import { useCommands } from '../features/control/useCommands'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { EventLog } from '../features/log/EventLog'
 import { nameOf } from '../features/runs/RunList'
-import styles from '../features/runs/runs.module.css'
 import { Breadcrumb } from './Breadcrumb'
-import classes from './pages.module.css'
 import { sideBySideHref, runHref } from './route'
 import { useBehavior } from './useBehavior'
 
@@ -51,12 +49,13 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
       <VisuallyHidden component="h1">Two runs side by side</VisuallyHidden>
       <RefusalLine />
       {isNarrow ? (
-        <Box flex={1} mih={0} style={{ overflow: 'auto' }} data-stacked>
-          {column(left, 'left', right)}
-          {column(right, 'right', left)}
+        <Box flex={1} mih={0} style={{ overflow: 'auto' }}>
+          <Box h="88dvh">{column(left, 'left', right)}</Box>
+          <Divider size="md" color="var(--line-strong)" />
+          <Box h="88dvh">{column(right, 'right', left)}</Box>
         </Box>
       ) : (
-        <Group orientation="horizontal" className={classes.work}>
+        <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
           <Pane id="left-run" defaultSize="50%" minSize="25%">
             {column(left, 'left', right)}
           </Pane>
@@ -115,14 +114,14 @@ function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
     )
   }
   return (
-    <section className={styles.column} aria-label={`Run on the ${side}`}>
+    <Stack component="section" gap={0} h="100%" miw={0} mih={0} bg="var(--surface)" aria-label={`Run on the ${side}`}>
       <ColumnHead>{choice}</ColumnHead>
       {knowsRuns && (
         <Empty icon={<IconLayoutColumns size={26} stroke={1.4} aria-hidden />} title="No run is shown here">
           {id ? 'This server knows no such run; choose another one.' : 'Choose one.'}
         </Empty>
       )}
-    </section>
+    </Stack>
   )
 }
 
@@ -175,7 +174,7 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
   }
 
   return (
-    <section className={styles.column} aria-label={`Run on the ${side}`}>
+    <Stack component="section" gap={0} h="100%" miw={0} mih={0} bg="var(--surface)" aria-label={`Run on the ${side}`}>
       <ColumnHead>
         {choice}
         <Box flex={1} />
@@ -206,6 +205,6 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
           <EventLog of={name} />
         </Pane>
       </Group>
-    </section>
+    </Stack>
   )
 }

@@ -1,5 +1,5 @@
 /** A sweep: how far it is, what it has shown, its runs. The run that is chosen stands in the address. */
-import { Code, SimpleGrid, Text } from '@mantine/core'
+import { Box, Code, SimpleGrid, Text } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { useLive } from '../api/live'
 import { useAnswer, useOutdated } from '../api/queryClient'
@@ -16,7 +16,6 @@ import { FailureCount } from '../features/sweeps/FailureCount'
 import { SearchReport } from '../features/sweeps/SearchReport'
 import { SuccessRate, SweepControls, SweepProgress } from '../features/sweeps/SweepControls'
 import { SweepReport } from '../features/sweeps/SweepReport'
-import classes from '../features/sweeps/sweeps.module.css'
 import { VerdictBadge } from '../features/sweeps/VerdictBadge'
 import { behaviorHref, recordingHref, sweepHref, SWEEPS_HREF } from './route'
 
@@ -82,8 +81,9 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
     onOpenSweep: (other: string) => onOpen(sweepHref(other)),
   }
   return (
-    <div className={classes.page}>
+    <Box flex={1} mih={0} style={{ overflow: 'auto' }}>
       <PageHead
+        isSticky
         title={sweepName(line.id)}
         words={
           <>
@@ -111,7 +111,7 @@ function Opened({ view, runs, onOpen }: Shown & { readonly onOpen: (href: string
         </Text>
       )}
       {isSearch(view) ? <SearchReport view={view} runs={runs} {...of} /> : <SweepReport view={view} runs={runs} {...of} />}
-    </div>
+    </Box>
   )
 }
 

@@ -7,15 +7,18 @@ import { Empty } from '../components/Empty'
 import { PageHead } from '../components/PageHead'
 import { NewSweep } from '../features/sweeps/NewSweep'
 import { OtherResults, SweepList } from '../features/sweeps/SweepList'
-import classes from '../features/sweeps/sweeps.module.css'
 import { sweepHref } from './route'
 
 export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void }) {
   const { value, problem } = useAnswer(sweepQueries.list())
   const mayOperate = useLive((s) => s.role) === 'operator'
   return (
-    <div className={classes.page}>
-      <PageHead title="Sweeps" words="How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors">
+    <Box flex={1} mih={0} style={{ overflow: 'auto' }}>
+      <PageHead
+        isSticky
+        title="Sweeps"
+        words="How often a behavior succeeds, and how it fails: many runs in simulation, with varied factors"
+      >
         {mayOperate && value && <NewSweep taken={value.sweeps.map((each) => each.id)} onMade={(id) => onOpen(sweepHref(id))} />}
       </PageHead>
       {problem && <Empty title="The sweeps cannot be read">{problem}</Empty>}
@@ -33,6 +36,6 @@ export function SweepsPage({ onOpen }: { readonly onOpen: (href: string) => void
           )}
         </Box>
       )}
-    </div>
+    </Box>
   )
 }

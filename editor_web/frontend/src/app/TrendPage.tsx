@@ -1,5 +1,5 @@
 /** The last runs of a behavior: how many succeeded, how long they and their nodes took, and two of them to compare. */
-import { Button, Flex, NativeSelect } from '@mantine/core'
+import { Box, Button, Flex, NativeSelect } from '@mantine/core'
 import { IconGitCompare } from '@tabler/icons-react'
 import { useState } from 'react'
 import { comparisonQueries } from '../api/comparison'
@@ -10,7 +10,7 @@ import { Panel } from '../components/Panel'
 import { DurationTable } from '../features/trend/DurationTable'
 import { RunBars } from '../features/trend/RunBars'
 import { countText } from '../features/trend/words'
-import styles from '../features/trend/trend.module.css'
+import classes from './pages.module.css'
 import { compareHref, runHref } from './route'
 
 const LAST = [10, 20, 50, 100, 200]
@@ -49,7 +49,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
       {trend.runs.length === 0 ? (
         <Empty title="No runs">The journal has no run of this behavior.</Empty>
       ) : (
-        <div className={styles.body}>
+        <Box className={classes.pair ?? ''} __vars={{ '--widths': 'minmax(0, 2fr) minmax(0, 3fr)' }}>
           <Panel title="Runs">
             <RunBars
               runs={trend.runs}
@@ -62,7 +62,7 @@ export function TrendPage({ behavior, onOpen }: { readonly behavior: string; rea
           <Panel title="Durations of runs that succeeded">
             {trend.duration ? <DurationTable whole={trend.duration} nodes={trend.nodes} /> : <Empty title="None of these runs succeeded" />}
           </Panel>
-        </div>
+        </Box>
       )}
     </Flex>
   )

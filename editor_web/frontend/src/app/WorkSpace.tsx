@@ -4,10 +4,8 @@ import type { ReactNode } from 'react'
 import { Placed, useMovable } from '../components/Movable'
 import { Splitter } from '../components/Splitter'
 import { TabCount } from '../components/TabCount'
-import tabClasses from '../components/tabs.module.css'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { Group, Panel as Pane, useDefaultLayout } from 'react-resizable-panels'
-import classes from './pages.module.css'
 import type { RunLayout } from './runLayout'
 
 export type Tab = 'parameters' | 'node' | 'outline' | 'holds' | 'problems' | 'log' | 'failure'
@@ -61,7 +59,7 @@ export function Wide({ arrangement, cell, course, records, ...moved }: WideProps
       {tabs.source}
       {!isDebug && arrangement !== 'operate' && <Placed host={tabs.host} isHidden />}
       {!hasGraph && <Placed host={graph.host} isHidden />}
-      <Group orientation="vertical" className={classes.work} data-work-space {...page}>
+      <Group orientation="vertical" style={{ flex: 1, minHeight: 0 }} data-work-space {...page}>
         <Pane key="upper" id={id('upper')} defaultSize={isDebug ? '62%' : '100%'} minSize="25%">
           <Group orientation="horizontal" {...upper}>
             {hasGraph && (
@@ -162,13 +160,7 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
   // Another layout may have had more of them.
   const shown = names.includes(tab) ? tab : (names[0] ?? tab)
   return (
-    <Tabs
-      value={shown}
-      onChange={(value) => onTab((value ?? 'parameters') as Tab)}
-      className={tabClasses.tabs ?? ''}
-      classNames={{ list: tabClasses.list ?? '', tab: tabClasses.tab ?? '', panel: tabClasses.panel ?? '' }}
-      keepMounted
-    >
+    <Tabs value={shown} onChange={(value) => onTab((value ?? 'parameters') as Tab)} keepMounted>
       <Tabs.List>
         {names.map((name) => (
           <Tabs.Tab key={name} value={name}>

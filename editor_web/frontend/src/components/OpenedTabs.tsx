@@ -2,7 +2,6 @@
 import { Tabs } from '@mantine/core'
 import { useState, type ReactNode } from 'react'
 import { Loading } from './Loading'
-import classes from './tabs.module.css'
 
 interface OpenedTabsProps {
   readonly label: string
@@ -31,13 +30,7 @@ export function OpenedTabs({ label, bodies, isDock = false, asked }: OpenedTabsP
   }
 
   return (
-    <Tabs
-      value={tab}
-      onChange={open}
-      className={isDock ? `${classes.tabs} ${classes.dock}` : (classes.tabs ?? '')}
-      classNames={{ list: classes.list ?? '', tab: classes.tab ?? '', panel: classes.panel ?? '' }}
-      keepMounted
-    >
+    <Tabs value={tab} onChange={open} data-dock={isDock || undefined} keepMounted>
       <Tabs.List aria-label={label}>
         {names.map((name) => (
           <Tabs.Tab key={name} value={name}>

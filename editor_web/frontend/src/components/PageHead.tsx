@@ -10,12 +10,15 @@ export interface PageHeadProps {
   readonly state?: ReactNode
   /** Are the words read out when they change? */
   readonly isStatus?: boolean
+  /** Does it stay in sight where its page scrolls? */
+  readonly isSticky?: boolean
   readonly children?: ReactNode
 }
 
 const LINE = { borderBottom: '1px solid var(--line)' }
+const STICKY = { pos: { base: 'static', md: 'sticky' }, top: 0, style: { ...LINE, zIndex: 4 } } as const
 
-export function PageHead({ title, words, state, isStatus = false, children }: PageHeadProps) {
+export function PageHead({ title, words, state, isStatus = false, isSticky = false, children }: PageHeadProps) {
   return (
     <Flex
       component="header"
@@ -27,6 +30,7 @@ export function PageHead({ title, words, state, isStatus = false, children }: Pa
       bg="var(--surface)"
       wrap={{ base: 'wrap', md: 'nowrap' }}
       style={LINE}
+      {...(isSticky ? STICKY : {})}
     >
       <Box miw={0} flex={{ base: '1 1 100%', md: '0 1 auto' }}>
         <Title order={1} fz="1.18rem" lh={1.25} style={{ overflow: 'hidden', textOverflow: 'ellipsis' }}>

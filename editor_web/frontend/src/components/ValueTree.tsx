@@ -14,7 +14,7 @@ interface ValueTreeProps {
 
 export const ValueTree = memo(function ValueTree({ label, value, open = 1 }: ValueTreeProps) {
   return (
-    <ul className={classes.tree} aria-label={label}>
+    <ul className={`${classes.tree} plain-list`} aria-label={label}>
       {isShort(value) ? (
         <li className={classes.line}>
           <Short value={value} />
@@ -44,7 +44,7 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
   const Chevron = isOpen ? IconChevronDown : IconChevronRight
   return (
     <li>
-      <UnstyledButton className={classes.fold} aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
+      <UnstyledButton className={`${classes.line} pick-row`} aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
         <Chevron size={12} aria-hidden />
         <Name>{name}</Name>
         {!isOpen && (
@@ -54,7 +54,7 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
         )}
       </UnstyledButton>
       {isOpen && (
-        <ul>
+        <ul className="plain-list">
           <Parts value={value} open={open - 1} />
         </ul>
       )}

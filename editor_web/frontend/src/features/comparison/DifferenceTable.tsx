@@ -1,7 +1,7 @@
 /** Values of two runs beside one another. */
 import { Table } from '@mantine/core'
 import type { ValueChange } from '../../api/types'
-import styles from './comparison.module.css'
+import styles from '../../components/table.module.css'
 
 export function DifferenceTable({ rows, name }: { readonly rows: readonly ValueChange[]; readonly name: string }) {
   return (

@@ -4,7 +4,7 @@ import { useState } from 'react'
 import type { NodeDifference } from '../../api/types'
 import { signed } from '../../document/comparison'
 import { duration } from '../../document/time'
-import styles from './comparison.module.css'
+import styles from '../../components/table.module.css'
 
 export function NodeDurations({ nodes }: { readonly nodes: readonly NodeDifference[] }) {
   const [isByDifference, setByDifference] = useState(true)

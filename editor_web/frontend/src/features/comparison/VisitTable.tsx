@@ -8,7 +8,7 @@ import { statusOf } from '../../document/runState'
 import { differenceS, durationOf, endWords, isDifferent, signed } from '../../document/comparison'
 import { duration } from '../../document/time'
 import { depthOf, nameOfPath } from '../../document/path'
-import styles from './comparison.module.css'
+import styles from '../../components/table.module.css'
 
 interface VisitTableProps {
   readonly visits: readonly AlignedVisit[]

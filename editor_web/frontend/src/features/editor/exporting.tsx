@@ -4,6 +4,7 @@ import { flushSync } from 'react-dom'
 import { expansionOf } from '../../document/editing/expansion'
 import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
+import { tokensOf } from '../../components/tokens'
 import { drawingOf } from './drawing'
 import { Picture } from './Picture'
 import { OF_PAGE, type Palette } from './pictureParts'
@@ -46,8 +47,8 @@ async function pictureOfDraft(): Promise<string> {
 
 /** What the variables of the page stand for now: a file of its own has none. */
 function colours(): Palette {
-  const style = getComputedStyle(document.documentElement)
-  const value = (variable: string) => style.getPropertyValue(variable.slice(4, -1)).trim()
+  const token = tokensOf(document.documentElement)
+  const value = (variable: string) => token(variable.slice('var(--'.length, -1))
   return Object.fromEntries(Object.entries(OF_PAGE).map(([part, variable]) => [part, value(String(variable))])) as unknown as Palette
 }
 

@@ -145,7 +145,7 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
 
 function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: () => void }) {
   return (
-    <PageLink className={classes.item ?? ''} href={href} onOpen={onOpen}>
+    <PageLink className={`${classes.item} pick-row`} href={href} onOpen={onOpen}>
       <Group gap="sm" wrap="nowrap" justify="space-between">
         <Text span inherit truncate fw={620}>
           {run.behavior}

@@ -40,7 +40,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
                 </Text>
               </div>
             ) : (
-              <PageLink className={classes.item ?? ''} href={href(file.path)} onOpen={() => onOpen(file.path)}>
+              <PageLink className={`${classes.item} pick-row`} href={href(file.path)} onOpen={() => onOpen(file.path)}>
                 <Named file={file} />
               </PageLink>
             )}

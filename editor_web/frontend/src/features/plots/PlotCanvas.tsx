@@ -1,4 +1,5 @@
 /** The canvas of the curves: drawn when something has come, zoomed by wheel or keys, panned by dragging. */
+import { tokensOf } from '../../components/tokens'
 import { useElementSize, useMergedRef } from '@mantine/hooks'
 import { useEffect, useRef, type KeyboardEvent, type PointerEvent } from 'react'
 import { actOn, useWheelZoom } from './canvasInput'
@@ -93,12 +94,11 @@ export function sized(canvas: HTMLCanvasElement, width: number, height: number):
 }
 
 export function lookOf(element: HTMLElement): Look {
-  const style = getComputedStyle(element)
-  const named = (name: string) => style.getPropertyValue(name).trim()
+  const token = tokensOf(element)
   return {
-    text: named('--quiet'),
-    line: named('--line'),
-    colors: Array.from({ length: 8 }, (_, index) => named(`--curve-${index}`)),
-    font: `11px ${style.fontFamily}`,
+    text: token('quiet'),
+    line: token('line'),
+    colors: Array.from({ length: 8 }, (_, index) => token(`curve-${index}`)),
+    font: `11px ${getComputedStyle(element).fontFamily}`,
   }
 }

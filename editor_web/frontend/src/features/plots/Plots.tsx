@@ -1,5 +1,5 @@
 /** Curves of chosen numbers of topics: joints, forces, widths, over the last two minutes. */
-import { Button, Group, SegmentedControl, Text } from '@mantine/core'
+import { Box, Button, Group, SegmentedControl, Text } from '@mantine/core'
 import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
 import { busQueries } from '../../api/bus'
@@ -121,9 +121,9 @@ export function Plots() {
 
   return (
     <Panel title="Plots" tools={tools}>
-      <div className={classes.plots} ref={area}>
+      <Box pos="absolute" inset={0} className={classes.plots} ref={area}>
         {body()}
-      </div>
+      </Box>
     </Panel>
   )
 }

@@ -1,5 +1,5 @@
 /** Curves of a recorded run, or of two over one another, with the cursor that the whole page shares. */
-import { Button, Group, Text } from '@mantine/core'
+import { Box, Button, Group, Text } from '@mantine/core'
 import { IconArrowsMaximize, IconChartLine, IconDownload, IconListTree, IconPhotoDown } from '@tabler/icons-react'
 import { useCallback, useMemo, useRef, useState } from 'react'
 import { Empty } from '../../components/Empty'
@@ -150,9 +150,9 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
 
   return (
     <Panel title="Recorded curves" tools={tools}>
-      <div className={classes.plots} ref={area}>
+      <Box pos="absolute" inset={0} className={classes.plots} ref={area}>
         {body()}
-      </div>
+      </Box>
     </Panel>
   )
 }

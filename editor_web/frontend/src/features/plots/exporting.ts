@@ -1,4 +1,5 @@
 /** Saving what is plotted as a file. */
+import { tokensOf } from '../../components/tokens'
 
 export function saveBlob(blob: Blob, name: string): void {
   const link = document.createElement('a')
@@ -15,7 +16,7 @@ export function savePicture(canvas: HTMLCanvasElement, name: string): void {
   copy.height = canvas.height
   const pen = copy.getContext('2d')
   if (!pen) return
-  pen.fillStyle = getComputedStyle(canvas).getPropertyValue('--surface').trim()
+  pen.fillStyle = tokensOf(canvas)('surface')
   pen.fillRect(0, 0, copy.width, copy.height)
   pen.drawImage(canvas, 0, 0)
   copy.toBlob((blob) => blob && saveBlob(blob, name), 'image/png')

@@ -1,12 +1,11 @@
 /** The runs that ended last, one line each. */
-import { Checkbox, Group, Paper, Text } from '@mantine/core'
+import { Checkbox, Divider, Group, List, Paper, Text } from '@mantine/core'
 import type { RunView } from '../../api/types'
 import { RunBadge } from '../../components/StatusBadge'
 import { PageLink } from '../../components/PageLink'
 import { isFailed } from '../../document/runState'
 import { duration, wallTime } from '../../document/time'
 import { nameOf } from './RunList'
-import classes from './runs.module.css'
 
 interface FinishedRunsProps {
   readonly runs: readonly RunView[]
@@ -18,45 +17,36 @@ interface FinishedRunsProps {
 
 export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedRunsProps) {
   return (
-    <Paper
-      component="ul"
-      withBorder
-      radius="md"
-      mx="md"
-      mb="lg"
-      mt={0}
-      p={0}
-      bg="var(--surface)"
-      className={classes.ended ?? ''}
-      style={{ listStyle: 'none' }}
-      aria-label="Runs that ended last"
-    >
-      {runs.map((run) => (
-        <li key={run.id}>
-          <Group gap="sm" px="sm" py="2xs" fz="0.84rem">
-            <RunBadge run={run} />
-            <PageLink href={href(run.id)} onOpen={() => onOpen(run.id)}>
-              {nameOf(run.behavior)}
-            </PageLink>
-            <Text span inherit c="dimmed">
-              {wallTime(run.started_at_s)}, {duration(run.duration_s)}
-            </Text>
-            {run.cause && (
-              <Text span inherit truncate flex="1 1 12rem" c={isFailed(run) ? 'var(--failed)' : 'dimmed'} title={run.cause}>
-                {run.cause}
+    <Paper withBorder radius="md" mx="md" mb="lg" bg="var(--surface)">
+      <List listStyleType="none" aria-label="Runs that ended last">
+        {runs.map((run, index) => (
+          <li key={run.id}>
+            {index > 0 && <Divider color="var(--line)" />}
+            <Group gap="sm" px="sm" py="2xs" fz="0.84rem">
+              <RunBadge run={run} />
+              <PageLink href={href(run.id)} onOpen={() => onOpen(run.id)}>
+                {nameOf(run.behavior)}
+              </PageLink>
+              <Text span inherit c="dimmed">
+                {wallTime(run.started_at_s)}, {duration(run.duration_s)}
               </Text>
-            )}
-            <Checkbox
-              ml="auto"
-              size="xs"
-              label="Compare"
-              aria-label={`Compare ${nameOf(run.behavior)} of ${wallTime(run.started_at_s)}`}
-              checked={chosen.includes(run.id)}
-              onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
-            />
-          </Group>
-        </li>
-      ))}
+              {run.cause && (
+                <Text span inherit truncate flex="1 1 12rem" c={isFailed(run) ? 'var(--failed)' : 'dimmed'} title={run.cause}>
+                  {run.cause}
+                </Text>
+              )}
+              <Checkbox
+                ml="auto"
+                size="xs"
+                label="Compare"
+                aria-label={`Compare ${nameOf(run.behavior)} of ${wallTime(run.started_at_s)}`}
+                checked={chosen.includes(run.id)}
+                onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
+              />
+            </Group>
+          </li>
+        ))}
+      </List>
     </Paper>
   )
 }

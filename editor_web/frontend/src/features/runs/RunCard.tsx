@@ -14,7 +14,6 @@ import { wallTime } from '../../document/time'
 import { pathWords } from '../../document/path'
 import { nameOf } from './RunList'
 import { RunStrip } from './RunStrip'
-import classes from './runs.module.css'
 
 export interface RunCardProps {
   readonly run: RunView
@@ -81,7 +80,7 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
           )}
         </Text>
         {root && <RunStrip root={root} />}
-        <dl className={classes.facts}>
+        <dl className="facts">
           <dt>Active</dt>
           <dd>
             <Active />

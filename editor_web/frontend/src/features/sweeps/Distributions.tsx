@@ -5,7 +5,7 @@ import type { Quantiles, SweepView } from '../../api/types'
 import { quantileGroups, short, type QuantileGroup } from '../../document/sweeps'
 import { PartTitle } from './Note'
 import { ResultTable } from './ResultTable'
-import table from './table.module.css'
+import table from '../../components/table.module.css'
 import classes from './bars.module.css'
 
 const FIRST = 8
@@ -38,7 +38,7 @@ function Quantities({ group }: { readonly group: QuantileGroup }) {
         <Table.Tbody>
           {rows.map((row) => (
             <Table.Tr key={row.name}>
-              <Table.Th scope="row" ff="monospace" className={`${table.cut} ${table.path}`} title={`${row.name}, ${row.runs} runs`}>
+              <Table.Th scope="row" ff="monospace" className={`cut-text ${table.path}`} title={`${row.name}, ${row.runs} runs`}>
                 {row.name}
               </Table.Th>
               {[row.least, row.middle, row.p95, row.most].map((value, at) => (
@@ -67,9 +67,9 @@ function Strip({ row, from, to }: { readonly row: Quantiles; readonly from: numb
   const width = (low: number, high: number) => `${(100 * (high - low)) / (to - from || 1)}%`
   return (
     <span className={classes.bar} aria-hidden>
-      <span className={classes.whisker} style={{ left: at(row.least), width: width(row.least, row.most) }} />
+      <span style={{ left: at(row.least), width: width(row.least, row.most) }} />
       <span className={classes.box} style={{ left: at(row.middle), width: width(row.middle, row.p95) }} />
-      <span className={classes.median} style={{ left: at(row.middle) }} />
+      <span className={classes.mark} style={{ left: at(row.middle) }} />
     </span>
   )
 }

@@ -5,7 +5,7 @@ import { percent } from '../../document/sweeps'
 import { rangeText } from '../../document/searches'
 import { CauseButton } from './Outcomes'
 import { ResultTable } from './ResultTable'
-import table from './table.module.css'
+import table from '../../components/table.module.css'
 
 const HEAD = ['Failing', 'Executed', 'Likelihood', 'Successes in there']
 
@@ -45,7 +45,7 @@ function Regions({ regions, cause }: { readonly regions: readonly FactorRegion[]
       <Table.Tbody>
         {regions.map((region) => (
           <Table.Tr key={region.address}>
-            <Table.Th scope="row" ff="monospace" className={`${table.cut} ${table.path}`} title={region.address}>
+            <Table.Th scope="row" ff="monospace" className={`cut-text ${table.path}`} title={region.address}>
               <bdi>{region.address}</bdi>
             </Table.Th>
             <Table.Td ta="right">{rangeText(region.failing, region.listed)}</Table.Td>

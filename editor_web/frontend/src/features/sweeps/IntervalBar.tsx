@@ -11,8 +11,8 @@ export interface IntervalBarProps {
 export function IntervalBar({ interval: [low, high], rate, isBad = false }: IntervalBarProps) {
   return (
     <span className={classes.bar} data-bad={isBad || undefined} aria-hidden>
-      <span className={classes.whisker} style={{ left: `${100 * low}%`, width: `${100 * (high - low)}%` }} />
-      <span className={classes.dot} style={{ left: `${100 * rate}%` }} />
+      <span style={{ left: `${100 * low}%`, width: `${100 * (high - low)}%` }} />
+      <span className={classes.mark} data-dot style={{ left: `${100 * rate}%` }} />
     </span>
   )
 }

@@ -70,7 +70,11 @@ export function CauseButton({ cause, chosen, onChoose }: { readonly cause: Cause
   const example = cause.examples[0]
   const isChosen = chosen !== undefined && chosen === example
   return (
-    <UnstyledButton className={classes.cause} aria-pressed={isChosen} onClick={() => onChoose(isChosen ? undefined : example)}>
+    <UnstyledButton
+      className={`${classes.cause} pick-row`}
+      aria-pressed={isChosen}
+      onClick={() => onChoose(isChosen ? undefined : example)}
+    >
       <Text span inherit fw={640} c="var(--failed)">
         {cause.runs} {cause.runs === 1 ? 'run' : 'runs'}
       </Text>

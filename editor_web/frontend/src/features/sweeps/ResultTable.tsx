@@ -1,7 +1,7 @@
 /** A table of results, which scrolls by itself where it is wider than its card. */
-import { Table } from '@mantine/core'
+import { Box, Table } from '@mantine/core'
 import type { ReactNode } from 'react'
-import classes from './table.module.css'
+import classes from '../../components/table.module.css'
 
 export interface ResultTableProps {
   readonly label: string
@@ -12,10 +12,10 @@ export interface ResultTableProps {
 
 export function ResultTable({ label, isChosenFrom = false, children }: ResultTableProps) {
   return (
-    <div className={classes.scroll} tabIndex={0} role="group" aria-label={label}>
+    <Box maw="100%" style={{ overflowX: 'auto' }} tabIndex={0} role="group" aria-label={label}>
       <Table
         className={classes.table ?? ''}
-        {...(isChosenFrom ? { style: { cursor: 'pointer' } } : {})}
+        style={{ whiteSpace: 'nowrap', cursor: isChosenFrom ? 'pointer' : 'auto' }}
         tabularNums
         verticalSpacing="4xs"
         horizontalSpacing="2xs"
@@ -25,7 +25,7 @@ export function ResultTable({ label, isChosenFrom = false, children }: ResultTab
       >
         {children}
       </Table>
-    </div>
+    </Box>
   )
 }
 

@@ -8,7 +8,6 @@ import { lookup } from '../../document/dict'
 import { duration } from '../../document/time'
 import { FIRST_ORDER, labelOf, orderedRuns, short, type RunOrder } from '../../document/sweeps'
 import { ResultTable } from './ResultTable'
-import table from './table.module.css'
 
 /** Columns that are no numbers. */
 const TEXTS = new Set(['number', 'ended', 'cause'])
@@ -122,7 +121,7 @@ function Row({ run, factors, isSelected, onSelect }: RowProps) {
           {labelOf(run)}
         </Group>
       </Table.Td>
-      <Table.Td className={table.cut} maw="24rem" title={run.cause}>
+      <Table.Td className="cut-text" maw="24rem" title={run.cause}>
         {run.reason}
       </Table.Td>
       <Table.Td ta="right">{duration(run.duration_s)}</Table.Td>

@@ -1,7 +1,6 @@
 /** The figure of a search that its report has too: how near to failure each run was; a click on a mark chooses its run. */
 import type { MouseEvent } from 'react'
 import classes from './drawings.module.css'
-import table from './table.module.css'
 
 export interface SearchFigureProps {
   /** SVG of the engine, whose marks have the number of their run; all text in it is escaped. */
@@ -22,7 +21,7 @@ export function SearchFigure({ figure, selected, onSelect }: SearchFigureProps) 
   return (
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- as above
     <div
-      className={`${classes.drawing} ${table.scroll}`}
+      className={`${classes.drawing} ${classes.figure}`}
       tabIndex={0}
       role="group"
       aria-label="How near to failure each run was"

@@ -1,6 +1,7 @@
 /** Draws the ruler, the marks and the bars of a timeline; only what is in sight. */
 import type { ActivationInterval, TimelineMarker } from '../../api/types'
 import { ticks, xOf, type MarkKind, type ShownRow, type View } from '../../document/timeline'
+import { tokensOf } from '../../components/tokens'
 
 export const ROW = 22
 export const HEAD = 38
@@ -21,8 +22,7 @@ export interface Colors {
 
 /** The page's colours as they are in the present scheme. */
 export function colorsOf(element: Element): Colors {
-  const style = getComputedStyle(element)
-  const of = (name: string) => style.getPropertyValue(`--${name}`).trim()
+  const of = tokensOf(element)
   const status = Object.fromEntries(['active', 'done', 'failed', 'stopped'].map((each) => [each, [of(each), of(`${each}-soft`)] as const]))
   return {
     text: of('text'),
