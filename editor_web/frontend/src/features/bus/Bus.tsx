@@ -94,7 +94,7 @@ export function Bus({ session }: BusProps) {
     return (
       <div className={classes.halves} data-chosen={name ? true : undefined}>
         <EntryList key={kind} entries={entries} kind={kind} chosen={name} onChoose={choose} traffic={traffic?.topics} />
-        <Box className={classes.detail} px="sm" pt="2xs" pb="sm" role="group" aria-label="What is selected" tabIndex={0}>
+        <Box px="sm" pt="2xs" pb="sm" role="group" aria-label="What is selected" tabIndex={0}>
           {detail(board)}
         </Box>
       </div>
@@ -118,9 +118,9 @@ export function Bus({ session }: BusProps) {
 
   return (
     <Panel title="Bus" tools={tools}>
-      <div className={classes.bus} ref={area}>
+      <Box pos="absolute" inset={0} className={classes.bus} ref={area}>
         {body()}
-      </div>
+      </Box>
     </Panel>
   )
 }

@@ -80,9 +80,9 @@ const Row = memo(
   function Row({ name, type, isChosen, onChoose, rate, age }: RowProps) {
     return (
       <li>
-        <UnstyledButton className={classes.row} aria-current={isChosen} onClick={() => onChoose(name)}>
-          <span className={classes.name}>{nameOfPath(name)}</span>
-          <Box component="span" flex={1}>
+        <UnstyledButton className={`${classes.row} pick-row`} aria-current={isChosen} onClick={() => onChoose(name)}>
+          <span className={`${classes.name} cut-text`}>{nameOfPath(name)}</span>
+          <Box component="span" flex={1} className="cut-text">
             {type}
           </Box>
           {rate !== undefined && <span className={classes.figure}>{rate}</span>}

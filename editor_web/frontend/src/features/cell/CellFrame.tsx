@@ -9,7 +9,6 @@ import { useSession } from '../../api/session'
 import { PAGE } from '../../api/layerGroups'
 import { stopByKey } from '../../components/stopKey'
 import { Empty } from '../../components/Empty'
-import classes from './Cell.module.css'
 import { PastMark } from './PastMark'
 
 export function CellFrame() {
@@ -29,7 +28,7 @@ export function CellFrame() {
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
-    <Box pos="relative" w="100%" h="100%" className={classes.view} data-shows={isPast ? 'past' : 'present'}>
+    <Box pos="relative" w="100%" h="100%" data-shows={isPast ? 'past' : 'present'}>
       {/* It has an origin of its own in the place of a sandbox; see decision 0029. */}
       <Box
         component="iframe"

@@ -67,7 +67,7 @@ export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProp
     // oxlint-disable-next-line react/exhaustive-deps -- once for each selection: what a person folds stays folded
   }, [selected])
   return (
-    <ScrollArea className={classes.tree} viewportProps={{ tabIndex: -1 }}>
+    <ScrollArea h="100%" p="xs" viewportProps={{ tabIndex: -1 }}>
       <Tree
         aria-label="Items of the cell"
         onKeyDown={(event) => {
@@ -117,7 +117,7 @@ function Line({
       {...elementProps}
       gap={6}
       wrap="nowrap"
-      className={`${elementProps.className} ${classes.line}`}
+      className={`${elementProps.className} ${classes.line} pick-row`}
       data-selected={selected || undefined}
     >
       <IconChevronRight
@@ -148,7 +148,7 @@ function Line({
       {state && (
         <Group component="span" gap={4} wrap="nowrap" ml="auto">
           {cell.kind === 'robot' && <StatusIcon status={state.look} size={13} />}
-          <Text span size="xs" c="dimmed" className={classes.state}>
+          <Text span size="xs" c="dimmed" style={{ fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' }}>
             {state.words}
           </Text>
         </Group>

@@ -10,7 +10,6 @@ import { StatusIcon } from '../../components/StatusIcon'
 import { ValueTree } from '../../components/ValueTree'
 import { holderOf, orientationText, placeOf, poseOf, positionText, stateWords, type CellNode, type CellNow } from '../../document/cellTree'
 import { lookup } from '../../document/dict'
-import classes from './cellItems.module.css'
 
 const KINDS: Readonly<Record<CellNode['kind'], string>> = {
   group: 'Group',
@@ -80,7 +79,7 @@ function State({ node, now, onSelect }: Pick<ItemDetailsProps, 'node' | 'now' | 
   const holder = node.kind === 'part' ? holderOf(name, now.state) : undefined
   if (!state && !pose && !holder) return null
   return (
-    <Table variant="vertical" withTableBorder aria-label={`State of ${node.name}`}>
+    <Table variant="vertical" withTableBorder tabularNums aria-label={`State of ${node.name}`}>
       <Table.Tbody>
         {state && (
           <Table.Tr>
@@ -119,11 +118,11 @@ function State({ node, now, onSelect }: Pick<ItemDetailsProps, 'node' | 'now' | 
           <>
             <Table.Tr>
               <Table.Th w="8rem">Position</Table.Th>
-              <Table.Td className={classes.state}>{positionText(pose)}</Table.Td>
+              <Table.Td>{positionText(pose)}</Table.Td>
             </Table.Tr>
             <Table.Tr>
               <Table.Th>Roll, pitch, yaw</Table.Th>
-              <Table.Td className={classes.state}>{orientationText(pose)}</Table.Td>
+              <Table.Td>{orientationText(pose)}</Table.Td>
             </Table.Tr>
           </>
         )}
@@ -189,9 +188,9 @@ function Lines({ item, cell }: { readonly item: CellItem; readonly cell: CellIte
         {item.line > 0 ? (
           <Code block>
             <Group gap="sm" align="start" wrap="nowrap">
-              <span aria-hidden className={classes.numbers}>
+              <Text span inherit ta="right" c="var(--quiet)" style={{ userSelect: 'none' }} aria-hidden>
                 {lines.map((_, at) => item.line + at).join('\n')}
-              </span>
+              </Text>
               <span>{item.text}</span>
             </Group>
           </Code>

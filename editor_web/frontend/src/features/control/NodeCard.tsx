@@ -1,5 +1,5 @@
 /** What can be done with the selected node: why it waits, breakpoints, lock, forced outcomes, run again. */
-import { Group, Text, TextInput } from '@mantine/core'
+import { Group, Text, TextInput, Title } from '@mantine/core'
 import { IconLock, IconLockOpen, IconPlayerPause, IconPlayerSkipForward, IconRepeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useLive } from '../../api/live'
@@ -32,7 +32,7 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           <strong>Waits</strong> {waitingWords(waiting)}
         </Text>
       )}
-      <h3>Start</h3>
+      <Part name="Start" />
       <Group gap="3xs">
         <CommandButton
           label="Run from here…"
@@ -49,11 +49,11 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           onPress={() => askStartHere({ behavior, path: node.path, kind: 'to' })}
         />
       </Group>
-      <h3>Break</h3>
+      <Part name="Break" />
       <BreakpointEditor key={node.path} path={node.path} isOff={commands.obstacle('breakpoint')} />
-      <h3>Lock</h3>
+      <Part name="Lock" />
       <Lock key={`${node.path} lock`} path={node.path} commands={commands} />
-      <h3>Force</h3>
+      <Part name="Force" />
       <Group gap="3xs" id={FORCE_ID} role="group" aria-label="Force an outcome">
         {node.outcomes.map((outcome) => (
           <CommandButton
@@ -65,7 +65,7 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           />
         ))}
       </Group>
-      <h3>Repeat</h3>
+      <Part name="Repeat" />
       <Group gap="3xs">
         <CommandButton
           label="Run again"
@@ -125,5 +125,13 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
         onPress={() => void commands.lock(path, reason.trim()).then(() => setReason(''))}
       />
     </Group>
+  )
+}
+
+function Part({ name }: { readonly name: string }) {
+  return (
+    <Title order={3} fz="0.78rem" fw={620} c="var(--quiet)" my={6}>
+      {name}
+    </Title>
   )
 }

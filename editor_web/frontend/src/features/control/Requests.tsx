@@ -29,7 +29,7 @@ export function Requests({ root, commands, onShow, of, isRow = false }: Requests
   const control = useLive((s) => s.control)
   const requests = requestsOf(control)
   return (
-    <div aria-live="assertive" className={isRow ? classes.row : undefined}>
+    <div aria-live="assertive">
       {requests.length > 0 && (
         <section id={of ? undefined : REQUESTS_ID} aria-label={of ? `${of} asks` : 'The run asks'}>
           <ul className="plain-list">
@@ -65,7 +65,7 @@ function Request({ request, outcomes, commands, onShow, isRow }: RequestProps) {
   const others = outcomes.filter((each) => each !== outcome)
   const common = { obstacle, onObstacle: () => commands.explain('autonomy', 'Answer') }
   return (
-    <li className={classes.request} aria-label={`Question of ${path}`}>
+    <li className={classes.request} data-row={isRow || undefined} aria-label={`Question of ${path}`}>
       <IconMessageQuestion size={20} color="var(--stopped)" style={{ flex: 'none' }} aria-hidden />
       <span className={classes.text}>
         <TextButton onPress={() => onShow(path)}>{path}</TextButton> wants to end with <strong>{outcome}</strong>

@@ -1,5 +1,5 @@
 /** The userdata of the shown run: every value of every container, who wrote it last and when. */
-import { Anchor, Badge, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
+import { Anchor, Badge, Box, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
 import { IconDatabase, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
 import { useData } from '../../api/data'
@@ -65,7 +65,7 @@ export function Data({ run, onShow }: DataProps) {
         </NoData>
       )
     return (
-      <div className={classes.scroll} tabIndex={0} role="region" aria-label="Userdata">
+      <Box className="pane" fz="0.8rem" tabIndex={0} role="region" aria-label="Userdata">
         {scopes.map((scope) => (
           <section key={scope.path} aria-label={scope.name}>
             <Title
@@ -95,15 +95,15 @@ export function Data({ run, onShow }: DataProps) {
             </List>
           </section>
         ))}
-      </div>
+      </Box>
     )
   }
 
   return (
     <Panel title="Data" tools={tools}>
-      <div className={classes.data} ref={area}>
+      <Box pos="absolute" inset={0} className={classes.data} ref={area}>
         {body()}
-      </div>
+      </Box>
     </Panel>
   )
 }

@@ -1,10 +1,9 @@
 /** The menu of a node in the graph of a run: where to start, and where to pause. */
-import { Menu } from '@mantine/core'
+import { Box, Menu } from '@mantine/core'
 import { toggleBreakpoint, useBreakpointsAt } from '../../api/breakpoints'
 import { askStartHere } from '../../api/startHere'
 import type { GraphNode } from '../../api/types'
 import type { Point } from '../../document/geometry'
-import classes from './graphMenu.module.css'
 
 export interface GraphMenuProps {
   readonly behavior: string
@@ -21,7 +20,7 @@ export function GraphMenu({ behavior, node, at, onClose }: GraphMenuProps) {
   return (
     <Menu opened onClose={onClose} position="bottom-start" offset={2} withinPortal shadow="md" returnFocus>
       <Menu.Target>
-        <span className={classes['anchor']} style={{ left: at.x, top: at.y }} />
+        <Box component="span" pos="fixed" w={0} h={0} left={at.x} top={at.y} />
       </Menu.Target>
       <Menu.Dropdown aria-label={`Node ${node.name}`}>
         <Menu.Item disabled={isOff} onClick={() => askStartHere({ behavior, path, kind: 'from' })}>

@@ -55,5 +55,5 @@ export function HeldText({ path }: { path: string }) {
     const reasons = waiting.reasons.map((reason) => WORDS[reason] ?? 'held').join(', ')
     return waiting.outcome ? `${reasons}: ${waiting.outcome}` : reasons
   })
-  return words ? <span className={classes.held}>{words}</span> : null
+  return words ? <span className={`${classes.held} cut-text`}>{words}</span> : null
 }

@@ -1,5 +1,5 @@
 /** The behavior as a tree of text: what the graph shows, for keyboard and screen reader. */
-import { Text, VisuallyHidden } from '@mantine/core'
+import { Flex, Text, VisuallyHidden } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
 import { useNodeLive } from '../../api/liveParts'
@@ -7,7 +7,6 @@ import type { GraphNode } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { kindLabel } from '../../document/tree'
-import classes from './Outline.module.css'
 
 export interface OutlineProps {
   readonly root: GraphNode
@@ -112,10 +111,16 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
   const Chevron = isClosed ? IconChevronRight : IconChevronDown
   const words = status === 'done' || status === 'failed' ? `${status}: ${live?.outcome ?? ''}` : status
   return (
-    <li
+    <Flex
+      component="li"
       role="treeitem"
-      className={classes.row}
-      style={{ paddingInlineStart: 8 + (level - 1) * 16 }}
+      className="pick-row"
+      align="center"
+      gap={7}
+      py={3}
+      pr={8}
+      pl={8 + (level - 1) * 16}
+      bdrs="sm"
       data-path={node.path}
       aria-level={level}
       aria-selected={isSelected}
@@ -147,6 +152,6 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
           ×{live.visits}
         </Text>
       )}
-    </li>
+    </Flex>
   )
 }

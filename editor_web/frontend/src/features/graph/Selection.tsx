@@ -8,7 +8,6 @@ import { StatusBadge } from '../../components/StatusBadge'
 import { nodeWords, statusOf } from '../../document/runState'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
-import classes from './Selection.module.css'
 
 export function Selection({ node }: { node: GraphNode }) {
   const live = useLive((s) => lookup(s.nodes, node.path))
@@ -26,7 +25,7 @@ export function Selection({ node }: { node: GraphNode }) {
         <strong>{node.name}</strong>
         {live && <StatusBadge look={statusOf(live.status)} words={nodeWords(live.status, live.status === 'active' ? '' : live.outcome)} />}
       </Group>
-      <dl className={classes.facts}>
+      <dl className="facts" style={{ marginTop: 6 }}>
         <dt>Kind</dt>
         <dd>{kindLabel(node.kind)}</dd>
         {node.title && (
@@ -58,7 +57,9 @@ export function Selection({ node }: { node: GraphNode }) {
         {live?.cause && (
           <>
             <dt>Cause</dt>
-            <dd data-status="failed">{live.cause}</dd>
+            <Text component="dd" inherit c="var(--failed)">
+              {live.cause}
+            </Text>
           </>
         )}
       </dl>

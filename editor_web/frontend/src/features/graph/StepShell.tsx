@@ -49,9 +49,13 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
         <StatusIcon status={status} />
         <Name name={data.node.name} />
         {data.isFolded && <Fold path={id} name={data.node.name} isFolded />}
-        {live && live.visits > 1 && <span className={classes.visits}>×{live.visits}</span>}
+        {live && live.visits > 1 && (
+          <span className={classes.quiet} style={{ marginLeft: 'auto' }}>
+            ×{live.visits}
+          </span>
+        )}
       </div>
-      <div className={classes.title}>
+      <div className={`${classes.title} cut-text`}>
         {data.node.disabled === false ? data.node.title || kindLabel(data.node.kind) : disabledText(data.node.disabled)}
       </div>
       <div className={classes.live}>
@@ -85,7 +89,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       <div className={classes.head}>
         <Icon size={16} color="var(--quiet)" style={{ flex: 'none' }} aria-hidden />
         <Name name={node.name} />
-        <span className={classes.kind}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
+        <span className={`${classes.kind} cut-text`}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
         <span style={{ flex: 1 }} />
         <HeldText path={id} />
         {status !== 'idle' && <StatusIcon status={status} size={14} />}
@@ -96,7 +100,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       </div>
       <div style={{ paddingInline: 14 }}>
         {node.conditions.length > 0 && (
-          <div className={classes.conditions} title={node.conditions.join('\n')}>
+          <div className={`${classes.conditions} cut-text`} title={node.conditions.join('\n')}>
             {node.conditions.join(' · ')}
           </div>
         )}
@@ -109,7 +113,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
 /** The name of a node, which may go on in a second line after an underscore. */
 function Name({ name }: { name: string }) {
   return (
-    <span className={classes.name}>
+    <span className={`${classes.name} cut-text`}>
       {name.split('_').map((part, index) => (
         <Fragment key={index}>
           {index > 0 && (

@@ -84,8 +84,10 @@ function Lines({ lines, hidden, isFiltered, follows, onLeave }: LinesProps) {
   }, [follows, last])
 
   return (
-    <div
-      className={classes.log}
+    <Box
+      className="pane"
+      py={4}
+      fz="0.8rem"
       role="log"
       aria-label="Events"
       aria-live="off"
@@ -109,7 +111,7 @@ function Lines({ lines, hidden, isFiltered, follows, onLeave }: LinesProps) {
       {lines.map((line) => (
         <Line key={line.seq} line={line} />
       ))}
-    </div>
+    </Box>
   )
 }
 
@@ -124,9 +126,9 @@ const Line = memo(function Line({ line }: { line: LogLine }) {
   const Chevron = open ? IconChevronDown : IconChevronRight
   return (
     <div className={classes.line} data-level={line.level}>
-      <span className={classes.time}>{line.time_s.toFixed(3)}</span>
+      <span>{line.time_s.toFixed(3)}</span>
       <span className={classes.level}>{line.level}</span>
-      <span className={classes.path}>{line.path || 'run'}</span>
+      <span className="cut-text">{line.path || 'run'}</span>
       <span className={classes.text}>
         {line.text}
         {hasCause && (

@@ -61,7 +61,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
   }
 
   return (
-    <ul className={classes.names} role="tree" aria-label="Nodes of the timeline" ref={tree}>
+    <ul className={`${classes.names} plain-list`} role="tree" aria-label="Nodes of the timeline" ref={tree}>
       {rows.slice(first, last).map((row, offset) => {
         const index = first + offset
         const status = statusAt(spans.get(row.path) ?? [], cursorS)
@@ -76,7 +76,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
             gap={4}
             w="100%"
             pr={6}
-            className={classes.name}
+            className="pick-row"
             style={{ top: index * ROW, height: ROW, paddingInlineStart: 4 + Math.min(row.depth, 8) * 11 }}
             data-index={index}
             title={row.path}

@@ -1,5 +1,5 @@
 /** Says that the past is shown, which moment of it, and leads back. */
-import { Box, Button, Group, Text, VisuallyHidden } from '@mantine/core'
+import { Box, Button, Group, Paper, Text, VisuallyHidden } from '@mantine/core'
 import { IconHistory } from '@tabler/icons-react'
 import { useEffect } from 'react'
 import { backToPresent, leave, servesCell, useTimeline } from '../../api/timeline'
@@ -23,7 +23,18 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
   if (!subject || timeS === undefined) return null
   return (
     <Box pos="relative" h={0} style={{ zIndex: 20 }}>
-      <Group className={classes.line} data-past-line wrap="nowrap" gap="xs" py={4} pl="sm" pr={6}>
+      <Paper
+        shadow="md"
+        component={Group}
+        className={classes.line ?? ''}
+        data-past-line
+        wrap="nowrap"
+        gap="xs"
+        py={4}
+        pl="sm"
+        pr={6}
+        bg="var(--stopped-soft)"
+      >
         <IconHistory size={17} color="var(--stopped)" style={{ flex: 'none' }} aria-hidden />
         <Text span size="sm">
           {/* Told once, not with every step of the cursor. */}
@@ -36,7 +47,7 @@ export function PastLine({ run, hasCellView }: PastLineProps) {
         <Button variant="light" size="compact-sm" radius="xl" flex="none" onClick={() => backToPresent(subject)}>
           {subject.isPast ? 'To the end' : 'Back to live'}
         </Button>
-      </Group>
+      </Paper>
     </Box>
   )
 }

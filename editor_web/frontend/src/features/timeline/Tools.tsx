@@ -15,7 +15,6 @@ import {
 import { useState, type ReactNode } from 'react'
 import { backToPresent, SPEEDS, useTimeline, type Subject } from '../../api/timeline'
 import { MARK_KINDS, MARK_WORDS, type MarkKind } from '../../document/timeline'
-import classes from './Timeline.module.css'
 import { play } from './usePlayback'
 
 export interface ToolsProps {
@@ -35,7 +34,15 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
   const speed = useTimeline((s) => s.speed)
   const isPast = useTimeline((s) => s.timeS !== undefined)
   return (
-    <Group className={classes.tools} flex={1} gap={2} miw={0} wrap="nowrap" role="toolbar" aria-label="Timeline">
+    <Group
+      style={{ overflowX: 'auto', scrollbarWidth: 'none' }}
+      flex={1}
+      gap={2}
+      miw={0}
+      wrap="nowrap"
+      role="toolbar"
+      aria-label="Timeline"
+    >
       <Tool label="Previous mark (Page up)" onPress={() => onJump(-1)}>
         <IconChevronLeftPipe size={16} />
       </Tool>
@@ -48,6 +55,7 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
       <NativeSelect
         size="xs"
         w="4.7rem"
+        flex="none"
         mx={4}
         aria-label="Speed of playing"
         value={String(speed)}
