@@ -37,7 +37,7 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
         value={text}
         onChange={(event) => setText(event.currentTarget.value)}
       />
-      <Flex component="ul" direction="column" m={0} p={0} className={classes.scroll}>
+      <Flex component="ul" direction="column" className={`${classes.scroll} plain-list`}>
         {fitting.map((entry) => (
           <li key={`${entry.kind}:${entry.name}`}>
             <NavLink

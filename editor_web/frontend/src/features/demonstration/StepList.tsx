@@ -29,7 +29,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
           Add taught entries, in the order of execution.
         </Text>
       )}
-      <Flex component="ol" direction="column" gap={6} m={0} p={0} className={classes.scroll}>
+      <Flex component="ol" direction="column" gap={6} className={`${classes.scroll} plain-list`}>
         {steps.map((step, index) => {
           const known = fitting(decided, steps) ? decided[index] : undefined
           const words = step.kind === 'action' ? `${ROLE_WORDS[step.name === 'close' ? 'close' : 'open']} gripper` : step.name
@@ -89,7 +89,7 @@ function RoleChoice({ step, guessed, onChange }: RoleChoiceProps) {
   return (
     <NativeSelect
       size="xs"
-      classNames={{ input: step.role ? '' : classes.guessed }}
+      styles={{ input: { borderStyle: step.role ? 'solid' : 'dashed' } }}
       aria-label={`What ${step.name} is for`}
       title={step.role ? undefined : 'Guessed from order, names and places'}
       value={step.role ?? guessed ?? ''}

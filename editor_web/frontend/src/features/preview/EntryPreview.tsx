@@ -152,7 +152,7 @@ function Sheet({ label, onClose, children }: { readonly label: string; readonly 
     // oxlint-disable-next-line jsx-a11y/click-events-have-key-events, jsx-a11y/no-noninteractive-element-interactions -- Escape closes it too
     <dialog
       ref={element}
-      className={`${classes.preview} ${classes.sheet}`}
+      className={classes.preview}
       aria-label={label}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}

@@ -38,7 +38,7 @@ export function CaptureList({ arm }: { readonly arm: string }) {
   }
   return (
     <Stack gap="xs">
-      <ul className={classes.list} aria-label="Captures">
+      <ul className={`${classes.list} plain-list`} aria-label="Captures">
         {captures.map((each) => (
           <li key={each.id}>
             <Checkbox

@@ -51,7 +51,7 @@ export function EntryList({ arm }: { readonly arm: string }) {
           {text || kind ? 'Search for the beginning of a word of the name or of a tag.' : 'Capture something and save it under a name.'}
         </Empty>
       ) : (
-        <ul className={classes.list} aria-label="Entries">
+        <ul className={`${classes.list} plain-list`} aria-label="Entries">
           {page?.entries.map((each) => (
             <li key={keyOf(each)}>
               <Checkbox

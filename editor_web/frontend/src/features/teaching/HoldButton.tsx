@@ -16,7 +16,7 @@ export function HoldButton({ label, children, isHeld, obstacle, onHold, onLetGo 
   const isOff = obstacle !== undefined
   return (
     <UnstyledButton
-      className={classes.hold}
+      className={`${classes.hold} pick-row`}
       data-held={isHeld || undefined}
       aria-label={label}
       aria-disabled={isOff || undefined}

@@ -140,7 +140,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
           label={(value) => `${value} %`}
           thumbProps={{ 'aria-labelledby': `${hint}-speed` }}
         />
-        <Text component="output" size="sm" w="5em" className={classes.value}>
+        <Text component="output" size="sm" w="5em" ta="end" style={{ fontVariantNumeric: 'tabular-nums' }}>
           {space === 'tool' ? `${((0.25 * share * 1000) / 100).toFixed(0)} mm/s` : `${degrees(share / 100).toFixed(0)}°/s`}
         </Text>
       </Group>
@@ -164,14 +164,14 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
           />
         </Group>
       )}
-      <ul className={classes.rows} data-space={space} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
+      <ul className={`${classes.rows} plain-list`} data-space={space} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
         {rows.map((row, axis) => (
           <li key={row.name}>
             <JogKey row={row} axis={axis} direction={-1} jog={jog} press={press} obstacle={obstacle} />
             <Text span size="sm" fw={620}>
               {row.name}
             </Text>
-            <Text span size="sm" className={classes.value}>
+            <Text span size="sm" ta="end" style={{ fontVariantNumeric: 'tabular-nums' }}>
               {row.value}
             </Text>
             {space === 'joints' && <LimitBar share={row.share ?? 0.5} words={row.limits} />}
