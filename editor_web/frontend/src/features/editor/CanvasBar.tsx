@@ -1,5 +1,5 @@
 /** Above the canvas: where one is, and how it is seen. */
-import { Group, Space, Text, UnstyledButton } from '@mantine/core'
+import { Box, Flex, Group, Space, Text, UnstyledButton } from '@mantine/core'
 import {
   IconArrowLeft,
   IconArrowsMaximize,
@@ -13,7 +13,7 @@ import {
   IconSquarePlus,
 } from '@tabler/icons-react'
 import { useReactFlow } from '@xyflow/react'
-import { useMemo } from 'react'
+import { type ComponentProps, useMemo } from 'react'
 import { nodeOf } from '../../document/editing/model'
 import { pathsTo } from '../../document/path'
 import { focusNode } from './actions'
@@ -42,7 +42,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
   const hasNotes = useNotes((s) => s.isShown)
   const hasFlow = useDataFlow((s) => s.isShown)
   return (
-    <Group wrap="nowrap" gap={2} mih={38} pl="sm" pr="xs" className={classes['bar']}>
+    <Group wrap="nowrap" gap={2} mih={38} pl="sm" pr="xs" bg="var(--surface)" className={classes['bar']}>
       <Path />
       {isStale && (
         <Text span size="xs" ml="sm" c="var(--failed)" truncate role="status">
@@ -89,18 +89,20 @@ function Path() {
   const id = useEditor((s) => s.id)
   const from = useMemo(() => referrerOf(id), [id])
   return (
-    <nav aria-label="Shown container">
-      <ol className={classes['path']}>
+    <Box component="nav" miw={0} aria-label="Shown container">
+      <Flex component="ol" className="plain-list cut-text" gap={5} fz="xs" c="dimmed">
         {from && (
           <li>
-            <UnstyledButton onClick={() => openOther(from.id, from.node)} title={`Back to ${from.id}`}>
+            <Crumb onClick={() => openOther(from.id, from.node)} title={`Back to ${from.id}`}>
               <IconArrowLeft size={13} aria-hidden /> {from.name}
-            </UnstyledButton>
+            </Crumb>{' '}
+            /
           </li>
         )}
-        {pathsTo(scope).map((path) => (
+        {pathsTo(scope).map((path, index) => (
           <li key={path}>
-            <UnstyledButton
+            {index > 0 && '/ '}
+            <Crumb
               aria-current={path === scope ? 'location' : undefined}
               onClick={() => {
                 const inside = pathsTo(scope)[pathsTo(path).length]
@@ -109,10 +111,18 @@ function Path() {
               }}
             >
               {path === 'root' ? name || 'root' : (nodeOf(root, path)?.name ?? path)}
-            </UnstyledButton>
+            </Crumb>
           </li>
         ))}
-      </ol>
-    </nav>
+      </Flex>
+    </Box>
+  )
+}
+
+function Crumb({ children, ...of }: ComponentProps<'button'>) {
+  return (
+    <UnstyledButton fz="inherit" {...(of['aria-current'] ? { c: 'var(--text)', fw: 620 } : { c: 'inherit' })} {...of}>
+      {children}
+    </UnstyledButton>
   )
 }

@@ -21,6 +21,8 @@ import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from 
 import { NodeIcon } from './NodeIcon'
 import { useMark, useTransitionFindings } from './marks'
 
+const QUIET = { color: 'var(--quiet)' }
+
 export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps<CardNode>) {
   const { node } = data
   return (
@@ -28,17 +30,19 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon className={classes['icon']} kind={node.kind} />
+        <NodeIcon color="var(--quiet)" kind={node.kind} />
         {node.role && (
           <span className={classes['chip']} data-role>
             {node.role}
           </span>
         )}
         <div className={classes['titles']}>
-          <span className={classes['name']} data-name>
+          <span className={`${classes['name']} cut-text`} data-name>
             {node.name}
           </span>
-          <span className={classes['title']}>{node.disabled === false ? node.title || insideText(data) : disabledText(node.disabled)}</span>
+          <span className={`${classes['title']} cut-text`}>
+            {node.disabled === false ? node.title || insideText(data) : disabledText(node.disabled)}
+          </span>
         </div>
         <Extras data={data} />
         <MarkIcon path={id} inside={node.children.length > 0} />
@@ -59,11 +63,11 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon className={classes['icon']} kind={node.kind} />
-        <span className={classes['name']} data-name>
+        <NodeIcon color="var(--quiet)" kind={node.kind} />
+        <span className={`${classes['name']} cut-text`} data-name>
           {node.name}
         </span>
-        <span className={classes['kind']}>
+        <span className={`${classes['kind']} cut-text`}>
           {node.disabled === false ? node.title || kindLabel(node.kind) : disabledText(node.disabled)}
         </span>
         {node.kind === 'behavior' && <span className={classes['chip']}>read only</span>}
@@ -71,7 +75,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
         <MarkIcon path={id} inside={false} />
       </div>
       {node.children.length === 0 && (
-        <div className={classes['kind']} style={{ padding: '8px 16px' }}>
+        <div className={`${classes['kind']} cut-text`} style={{ padding: '8px 16px' }}>
           Empty: add a state, or drop one here
         </div>
       )}
@@ -86,16 +90,16 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
   return (
     <div className={classes['card']} data-card="twig" data-kind={node.kind} {...looksOf(data, selected)}>
       <Handle type="target" id="above" position={Position.Top} className={classes['branch']} isConnectable={false} />
-      <NodeIcon className={classes['icon']} kind={node.kind} size={15} />
+      <NodeIcon color="var(--quiet)" kind={node.kind} size={15} />
       {node.role && (
         <span className={classes['chip']} data-role>
           {node.role}
         </span>
       )}
-      <span className={classes['name']} data-name>
+      <span className={`${classes['name']} cut-text`} data-name>
         {node.name}
       </span>
-      {node.disabled !== false && <em className={classes['kind']}>disabled</em>}
+      {node.disabled !== false && <em className={`${classes['kind']} cut-text`}>disabled</em>}
       {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
       {!data.isOpen && data.count > 0 && <span className={classes['chip']}>{data.count}</span>}
       <MarkIcon path={id} inside={!data.isOpen} />
@@ -205,9 +209,17 @@ function TransitionRow({
       data-finding={findings.length > 0 || undefined}
       title={findings.map((finding) => finding.message).join('\n') || undefined}
     >
-      <span className={classes['outcome']}>{transition.outcome}</span>
-      {!isDrawn && !isLoose && transition.target !== transition.outcome && <span className={classes['target']}>→ {transition.target}</span>}
-      {!isDrawn && transition.target === transition.outcome && <span className={classes['target']}>↦</span>}
+      <span className={`${classes['outcome']} cut-text`}>{transition.outcome}</span>
+      {!isDrawn && !isLoose && transition.target !== transition.outcome && (
+        <span className="cut-text" style={QUIET}>
+          → {transition.target}
+        </span>
+      )}
+      {!isDrawn && transition.target === transition.outcome && (
+        <span className="cut-text" style={QUIET}>
+          ↦
+        </span>
+      )}
       <Handle
         type="source"
         id={transition.outcome}
@@ -225,7 +237,7 @@ export const PillCard = memo(function PillCard({ data }: NodeProps<PillNode>) {
     <div className={classes['pill']} data-loose={data.count === 0 || undefined} data-failure={isFailure(data.outcome) || undefined}>
       <Handle type="target" id={IN} position={Position.Left} className={classes['in']} isConnectableStart={false} />
       <span>{data.outcome}</span>
-      {data.count !== 1 && <span className={classes['kind']}>{data.count === 0 ? 'unused' : `×${data.count}`}</span>}
+      {data.count !== 1 && <span className={`${classes['kind']} cut-text`}>{data.count === 0 ? 'unused' : `×${data.count}`}</span>}
     </div>
   )
 })
@@ -242,14 +254,16 @@ export const RulesCard = memo(function RulesCard({ data }: NodeProps<RulesNode>)
 function RuleTable({ node }: { node: CardData['node'] }) {
   return (
     <div className={classes['rules']} data-rules>
-      <span className={classes['target']}>Ends with</span>
+      <span className="cut-text" style={QUIET}>
+        Ends with
+      </span>
       {node.rules.length === 0 && <div data-failure>no rule yet</div>}
       {node.rules.map((rule, index) => (
         <div key={index}>
-          <span className={classes['outcome']} data-failure={isFailure(rule.outcome) || undefined}>
+          <span className={`${classes['outcome']} cut-text`} data-failure={isFailure(rule.outcome) || undefined}>
             {consequenceOf(rule)}
           </span>
-          <span className={classes['target']}>
+          <span className="cut-text" style={QUIET}>
             {rule.at_least !== null && `${rule.at_least} of `}
             {Object.entries(rule.when).map(([child, outcome], position) => (
               <span key={child}>
@@ -262,10 +276,12 @@ function RuleTable({ node }: { node: CardData['node'] }) {
       ))}
       {node.otherwise && (
         <div>
-          <span className={classes['outcome']} data-failure={isFailure(node.otherwise) || undefined}>
+          <span className={`${classes['outcome']} cut-text`} data-failure={isFailure(node.otherwise) || undefined}>
             {node.otherwise}
           </span>
-          <span className={classes['target']}>otherwise</span>
+          <span className="cut-text" style={QUIET}>
+            otherwise
+          </span>
         </div>
       )}
     </div>

@@ -17,7 +17,16 @@ export function DataFlowPanel() {
   useFreshDataFlow(true)
   return (
     <section className={classes['side']} aria-label="Data flow">
-      <Flex component="header" align="center" justify="space-between" pl="sm" pr="xs" className={classes['bar']} mih={38}>
+      <Flex
+        component="header"
+        align="center"
+        justify="space-between"
+        pl="sm"
+        pr="xs"
+        bg="var(--surface)"
+        className={classes['bar']}
+        mih={38}
+      >
         <Title order={2} fz="sm" fw={620}>
           Data flow
         </Title>
@@ -54,7 +63,7 @@ function KeyItem({ flow, isChosen }: { flow: KeyFlow; isChosen: boolean }) {
   const soundness = soundnessOf(flow)
   return (
     <div>
-      <UnstyledButton className={rows['row']} aria-expanded={isChosen} onClick={() => showKey(flow.key)}>
+      <UnstyledButton className={`${rows['row']} pick-row`} aria-expanded={isChosen} onClick={() => showKey(flow.key)}>
         <Text span size="xs" ff="monospace" fw={620} miw="4rem">
           {flow.key}
         </Text>
@@ -94,7 +103,7 @@ function Uses({ flow }: { flow: KeyFlow }) {
         {flow.writers.map((writer, index) => (
           <li key={index}>
             <UnstyledButton
-              className={rows['row']}
+              className={`${rows['row']} pick-row`}
               fz="xs"
               px={6}
               py={4}
@@ -115,7 +124,7 @@ function Uses({ flow }: { flow: KeyFlow }) {
         {flow.readers.map((reader, index) => (
           <li key={index}>
             <UnstyledButton
-              className={rows['row']}
+              className={`${rows['row']} pick-row`}
               fz="xs"
               px={6}
               py={4}

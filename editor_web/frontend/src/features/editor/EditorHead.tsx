@@ -1,6 +1,6 @@
 /** The head of the editor: which behavior, whether it is saved, and what can be done with all of it. */
 import { openSearch } from '../../api/search'
-import { Badge, Box, Button, Group, Text, Title } from '@mantine/core'
+import { Badge, Box, Button, Flex, Group, Text, Title } from '@mantine/core'
 import {
   IconArrowBackUp,
   IconArrowForwardUp,
@@ -31,7 +31,18 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
   const isTextShown = useEditor((s) => s.isTextShown)
   const noSave = mayEdit ? undefined : 'you may look only'
   return (
-    <header className={classes['head']} data-editor-head>
+    <Flex
+      component="header"
+      flex="none"
+      align="center"
+      gap="sm"
+      px="md"
+      py="0.45rem"
+      bg="var(--surface)"
+      wrap={{ base: 'wrap', md: 'nowrap' }}
+      style={{ borderBottom: '1px solid var(--line)' }}
+      data-editor-head
+    >
       <Box miw={0}>
         <Group gap="xs" wrap="nowrap">
           <Title order={1} fz="lg" fw={650} lh={1.25}>
@@ -114,7 +125,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
           tone="strong"
         />
       </div>
-    </header>
+    </Flex>
   )
 }
 

@@ -1,6 +1,6 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
 import { lookup } from '../../document/dict'
-import { Loader, Stack, Tabs } from '@mantine/core'
+import { Flex, Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
 import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
@@ -22,7 +22,6 @@ import { DataFlowPanel } from './DataFlowPanel'
 import { EditorHead } from './EditorHead'
 import { FileDialogs } from './FileDialogs'
 import { useFileDialog } from './fileDialogs'
-import classes from './frame.module.css'
 import { Inspector } from './Inspector'
 import { KeySheet } from './KeySheet'
 import { storeDraftNow } from './draftStorage'
@@ -162,12 +161,12 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   const canvas = (
     <Stack h="100%" mih={0} gap={0}>
       <CanvasBar hasMap={hasMap} onMap={() => setMap(!hasMap)} boxSelects={boxSelects} onBoxSelects={() => setBoxSelects(!boxSelects)} />
-      <div className={classes['canvas']}>
+      <Flex direction="column" flex={1} mih={0} data-below>
         <ViewBoundary name="Canvas">
           <Canvas hasMap={hasMap} boxSelects={boxSelects} />
         </ViewBoundary>
         {hasFlow && isNarrow && flow}
-      </div>
+      </Flex>
     </Stack>
   )
   const text = (
@@ -176,11 +175,11 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     </Loading>
   )
   return (
-    <div className={classes['editor']} ref={element} data-editor aria-busy={isBusy}>
+    <Flex direction="column" pos="relative" flex={1} mih={0} ref={element} data-editor aria-busy={isBusy}>
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
       <NoticeLine />
       {isNarrow ? (
-        <Tabs defaultValue="canvas" className={classes['tabs']}>
+        <Tabs defaultValue="canvas">
           <Tabs.List>
             <Tabs.Tab value="canvas">Canvas</Tabs.Tab>
             <Tabs.Tab value="library">Library</Tabs.Tab>
@@ -226,6 +225,6 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       <FileDialogs onGone={onGone} />
       <Suspense>{hasVersions && <VersionsDialog />}</Suspense>
       <KeySheet />
-    </div>
+    </Flex>
   )
 }

@@ -52,7 +52,11 @@ export function NodeFindings({ path }: { path: string }) {
       <PlainList label="Problems of this node">
         {own.map((finding, index) => (
           <li key={index}>
-            <UnstyledButton className={rows['row']} title={`${finding.message}. Show it with its fixes`} onClick={() => goTo(finding)}>
+            <UnstyledButton
+              className={`${rows['row']} pick-row`}
+              title={`${finding.message}. Show it with its fixes`}
+              onClick={() => goTo(finding)}
+            >
               <StatusIcon status={statusOf(finding.severity)} size={15} />
               <span className={rows['line']}>
                 <VisuallyHidden>{finding.severity}: </VisuallyHidden>

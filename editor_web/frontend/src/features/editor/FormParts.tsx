@@ -13,7 +13,14 @@ export interface FormHeadProps {
 
 export function FormHead({ icon, title, children, tools }: FormHeadProps) {
   return (
-    <Flex component="header" align="center" gap="xs" px="sm" py={10} className={classes['head']}>
+    <Flex
+      component="header"
+      align="center"
+      gap="xs"
+      px="sm"
+      py={10}
+      style={{ borderBottom: '1px solid var(--line)', overflowWrap: 'anywhere' }}
+    >
       {icon}
       <Box flex={1} miw={0}>
         <Text size="sm" fw={700}>

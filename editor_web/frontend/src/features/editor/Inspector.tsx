@@ -5,7 +5,6 @@ import { problemsOf } from '../../document/editing/findings'
 import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { ArrowForm } from './ArrowForm'
 import { DocumentForm } from './DocumentForm'
-import classes from './frame.module.css'
 import { NodeForm } from './NodeForm'
 import { ProblemList } from './ProblemList'
 import { SelectionForm } from './SelectionForm'
@@ -16,13 +15,7 @@ export function Inspector() {
   const problems = useEditor((s) => problemsOf(draftOf(s)).length)
   const arrow = useEditor((s) => s.arrow)
   return (
-    <Tabs
-      value={tab}
-      onChange={(value) => setEditor({ tab: (value ?? 'node') as SideTab })}
-      className={classes['tabs']}
-      data-inspector
-      keepMounted={false}
-    >
+    <Tabs value={tab} onChange={(value) => setEditor({ tab: (value ?? 'node') as SideTab })} data-inspector keepMounted={false}>
       <Tabs.List>
         <Tabs.Tab value="node">{arrow ? 'Arrow' : 'Node'}</Tabs.Tab>
         <Tabs.Tab value="document">Behavior</Tabs.Tab>

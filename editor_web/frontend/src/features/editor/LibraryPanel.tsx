@@ -118,7 +118,7 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
     <li>
       <Flex className={rows['around']}>
         <UnstyledButton
-          className={rows['row']}
+          className={`${rows['row']} pick-row`}
           px={6}
           py={3}
           style={{ cursor: 'grab' }}

@@ -38,12 +38,12 @@ const ICONS: Record<string, typeof IconBox> = {
 export interface NodeIconProps {
   readonly kind: string
   readonly size?: number
-  readonly className?: string | undefined
+  readonly color?: string
 }
 
-export function NodeIcon({ kind, size = 16, className }: NodeIconProps) {
+export function NodeIcon({ kind, size = 16, color = 'currentColor' }: NodeIconProps) {
   const catalogue = useEditor((s) => s.catalogue)
   const name = catalogue?.containers.find((each) => each.kind === kind)?.icon ?? ''
   const Icon = kind === 'behavior' ? IconFileImport : (ICONS[name] ?? IconBox)
-  return <Icon size={size} className={className} aria-hidden />
+  return <Icon size={size} color={color} style={{ flex: 'none' }} aria-hidden />
 }

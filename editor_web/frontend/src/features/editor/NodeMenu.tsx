@@ -1,11 +1,10 @@
 /** The menu of the selected nodes, where the pointer asked for it. */
-import { Kbd, Menu } from '@mantine/core'
+import { Box, Kbd, Menu } from '@mantine/core'
 import { Fragment } from 'react'
 import { chordText } from '../../document/editing/keys'
 import { isFrame, nodeOf, ROOT } from '../../document/editing/model'
 import type { Command } from './command'
 import { COMMANDS, disabledReason } from './commands'
-import classes from './nodeMenu.module.css'
 import { chosenOf, editor, rootOf, setEditor, useEditor } from './store'
 
 const ONE = [
@@ -31,7 +30,7 @@ export function NodeMenu() {
   return (
     <Menu opened onClose={close} position="bottom-start" offset={2} withinPortal shadow="md" returnFocus>
       <Menu.Target>
-        <span className={classes['anchor']} style={{ left: at.x, top: at.y }} />
+        <Box component="span" pos="fixed" w={0} h={0} left={at.x} top={at.y} />
       </Menu.Target>
       <Menu.Dropdown aria-label="Selected nodes">
         {parts.map((part, index) => (

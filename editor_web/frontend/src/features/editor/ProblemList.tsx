@@ -80,7 +80,7 @@ function Problem({ finding, fixes }: { readonly finding: FindingView; readonly f
   return (
     <li>
       <UnstyledButton
-        className={rows['row']}
+        className={`${rows['row']} pick-row`}
         aria-expanded={isOpen}
         onClick={() => (isOpen ? setEditor({ place: undefined }) : goTo(finding))}
       >

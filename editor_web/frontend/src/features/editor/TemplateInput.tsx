@@ -155,7 +155,7 @@ export function TemplateInput(props: TemplateInputProps) {
           withBorder
           shadow="md"
           p={4}
-          className={classes['offer']}
+          className={`${classes['offer']} plain-list`}
           role="listbox"
           id={`${id}-offer`}
           aria-label={`Choices for ${label}`}
@@ -163,6 +163,7 @@ export function TemplateInput(props: TemplateInputProps) {
         >
           {offer.items.map((item, index) => (
             <li
+              className="pick-row"
               key={item.text}
               id={`${id}-${index}`}
               role="option"

@@ -33,15 +33,7 @@ type View = (typeof VIEWS)[number]
 export function VersionView({ before, after, difference }: VersionViewProps) {
   const [view, setView] = useState<View>(before ? 'Changes' : 'This version')
   return (
-    <Tabs
-      value={view}
-      onChange={(value) => setView((value ?? 'Text') as View)}
-      keepMounted={false}
-      display="flex"
-      mih={0}
-      flex={1}
-      style={{ flexDirection: 'column' }}
-    >
+    <Tabs value={view} onChange={(value) => setView((value ?? 'Text') as View)} keepMounted={false}>
       <Tabs.List aria-label="What is shown">
         {VIEWS.map((each) => (
           <Tabs.Tab key={each} value={each}>
@@ -49,17 +41,17 @@ export function VersionView({ before, after, difference }: VersionViewProps) {
           </Tabs.Tab>
         ))}
       </Tabs.List>
-      <Tabs.Panel value="Changes">
+      <Tabs.Panel value="Changes" pt="2xs">
         {before ? (
           <Changes before={before} after={after} difference={difference} />
         ) : (
           <FormWords>This is the oldest version that is kept.</FormWords>
         )}
       </Tabs.Panel>
-      <Tabs.Panel value="This version">
+      <Tabs.Panel value="This version" pt="2xs">
         <Drawn of={after} markings={NO_MARKS} rowPx={ROW_PX} />
       </Tabs.Panel>
-      <Tabs.Panel value="Text">
+      <Tabs.Panel value="Text" pt="2xs">
         <TextDifference before={before} after={after} />
       </Tabs.Panel>
     </Tabs>

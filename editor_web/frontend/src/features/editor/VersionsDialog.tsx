@@ -73,7 +73,7 @@ function Versions() {
             return (
               <li key={hash}>
                 <UnstyledButton
-                  className={rows['row']}
+                  className={`${rows['row']} pick-row`}
                   style={{ flexDirection: 'column', gap: 0 }}
                   aria-current={hash === shown ? 'true' : undefined}
                   onClick={() => {
