@@ -1,5 +1,5 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
-import { ActionIcon, Box, Button, Group, Text, Tooltip, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
+import { ActionIcon, Box, Button, Group, Text, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
 import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
 import { useState, type MouseEvent } from 'react'
 import { api } from '../api/client'
@@ -127,28 +127,25 @@ function StopButton({ run }: { run: RunView }) {
   const isStopping = run.status === 'stopping'
   const isConnected = useLive((s) => s.connection === 'live')
   return (
-    <Tooltip
-      label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}
+    <Button
+      title={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}
+      variant="default"
+      size="xs"
+      aria-label={isStopping ? 'This run is stopping' : 'Stop this run'}
+      leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
+      disabled={isStopping || !isConnected}
+      onClick={() => {
+        api.stop(run.id).then(
+          () => setProblem(undefined),
+          (error: unknown) => setProblem(String(error)),
+        )
+      }}
     >
-      <Button
-        variant="default"
-        size="xs"
-        aria-label={isStopping ? 'This run is stopping' : 'Stop this run'}
-        leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
-        disabled={isStopping || !isConnected}
-        onClick={() => {
-          api.stop(run.id).then(
-            () => setProblem(undefined),
-            (error: unknown) => setProblem(String(error)),
-          )
-        }}
-      >
-        {isStopping ? 'Stopping' : 'Stop'}
-        <Text span inherit visibleFrom="xs">
-          &nbsp;{isStopping ? '' : 'this run'}
-        </Text>
-      </Button>
-    </Tooltip>
+      {isStopping ? 'Stopping' : 'Stop'}
+      <Text span inherit visibleFrom="xs">
+        &nbsp;{isStopping ? '' : 'this run'}
+      </Text>
+    </Button>
   )
 }
 
@@ -181,10 +178,15 @@ function SchemeSwitch() {
   const scheme = useComputedColorScheme('light')
   const next = scheme === 'dark' ? 'light' : 'dark'
   return (
-    <Tooltip label={`Use the ${next} theme`}>
-      <ActionIcon variant="subtle" color="gray" size="lg" aria-label={`Use the ${next} theme`} onClick={() => setColorScheme(next)}>
-        {scheme === 'dark' ? <IconSun size={18} /> : <IconMoon size={18} />}
-      </ActionIcon>
-    </Tooltip>
+    <ActionIcon
+      title={`Use the ${next} theme`}
+      variant="subtle"
+      color="gray"
+      size="lg"
+      aria-label={`Use the ${next} theme`}
+      onClick={() => setColorScheme(next)}
+    >
+      {scheme === 'dark' ? <IconSun size={18} /> : <IconMoon size={18} />}
+    </ActionIcon>
   )
 }

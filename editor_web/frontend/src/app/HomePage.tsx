@@ -3,14 +3,14 @@ import { Anchor, Box, Table, Text, VisuallyHidden } from '@mantine/core'
 import { useLive } from '../api/live'
 import { useTour } from '../api/tour'
 import { Empty } from '../components/Empty'
+import { lazyView } from '../components/lazyView'
+import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
 import { Panel } from '../components/Panel'
 import { RunBadge } from '../components/StatusBadge'
 import { TourButton } from '../components/TourButton'
 import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
-import { HandleMenu } from '../features/cell/HandleMenu'
-import { ShowMenu } from '../features/cell/ShowMenu'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { nameOf, RunTime } from '../features/runs/RunList'
@@ -18,6 +18,8 @@ import { TourInvitation } from '../features/tour/TourInvitation'
 import { InterruptedHere } from './InterruptedHere'
 import classes from './pages.module.css'
 import { runHref } from './route'
+
+const CellMenus = lazyView(async () => (await import('./CellMenus')).CellMenus)
 
 export interface HomePageProps {
   readonly hasCellView: boolean
@@ -39,12 +41,12 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
         {runs.length === 0 ? (
           <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
         ) : (
-          <Table.ScrollContainer minWidth={420} scrollAreaProps={{ viewportProps: { tabIndex: 0, 'aria-label': 'Latest runs' } }}>
-            <Table verticalSpacing={7} highlightOnHover>
+          <Box style={{ overflowX: 'auto' }} role="region" tabIndex={0} aria-label="Table of the latest runs">
+            <Table verticalSpacing={7} highlightOnHover miw={420}>
               <Table.Thead>
                 <Table.Tr>
                   <Table.Th>Behavior</Table.Th>
-                  <Table.Th>State</Table.Th>
+                  <Table.Th w={110}>State</Table.Th>
                   <Table.Th>Started</Table.Th>
                   <Table.Th>Duration</Table.Th>
                 </Table.Tr>
@@ -73,7 +75,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
                 ))}
               </Table.Tbody>
             </Table>
-          </Table.ScrollContainer>
+          </Box>
         )}
       </Panel>
     </Box>
@@ -84,8 +86,11 @@ function CellTools({ hasView, mayOperate }: { hasView: boolean; mayOperate: bool
   return (
     <>
       <Box flex={1} />
-      {hasView && <ShowMenu />}
-      {hasView && mayOperate && <HandleMenu />}
+      {hasView && (
+        <Loading name="Menus of the cell">
+          <CellMenus mayOperate={mayOperate} />
+        </Loading>
+      )}
     </>
   )
 }

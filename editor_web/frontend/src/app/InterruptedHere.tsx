@@ -3,7 +3,11 @@ import { Box, Title } from '@mantine/core'
 import { behaviorQueries } from '../api/behaviorQueries'
 import { useLive } from '../api/live'
 import { useAnswer } from '../api/queryClient'
-import { Interrupted } from '../features/runs/Interrupted'
+import { lazyView } from '../components/lazyView'
+import { Loading } from '../components/Loading'
+
+/** Few starts find any. */
+const Interrupted = lazyView(async () => (await import('../features/runs/Interrupted')).Interrupted)
 
 export interface InterruptedHereProps {
   /** Name of the behavior that is shown; all runs where none is. */
@@ -30,7 +34,9 @@ export function InterruptedHere({ behavior, onResumed }: InterruptedHereProps) {
       <Title order={2} fz="xs" py="3xs">
         Interrupted runs
       </Title>
-      <Interrupted runs={runs} obstacle={isConnected ? obstacle : 'the server does not answer'} onResumed={onResumed} />
+      <Loading name="Interrupted runs">
+        <Interrupted runs={runs} obstacle={isConnected ? obstacle : 'the server does not answer'} onResumed={onResumed} />
+      </Loading>
     </Box>
   )
 }

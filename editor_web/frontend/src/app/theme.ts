@@ -35,7 +35,7 @@ export const theme = createTheme({
   components: {
     Anchor: Anchor.extend({ defaultProps: { underline: 'always', c: 'var(--accent)' } }),
     // By its name: no page has tabs at first.
-    Tabs: { classNames: tabs },
+    Tabs: { classNames: { root: tabs.root, list: tabs.list, tab: tabs.tab, panel: tabs.panel } },
   },
   // Narrower than the kit's own: panels stand close together here. 4, 6 and 8 px of a 16 px page.
   spacing: { '4xs': rem(4), '3xs': rem(6), '2xs': rem(8) },

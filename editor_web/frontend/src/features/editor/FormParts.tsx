@@ -21,7 +21,9 @@ export function FormHead({ icon, title, children, tools }: FormHeadProps) {
       py={10}
       style={{ borderBottom: '1px solid var(--line)', overflowWrap: 'anywhere' }}
     >
-      {icon}
+      <Box flex="none" lh={0} c="dimmed">
+        {icon}
+      </Box>
       <Box flex={1} miw={0}>
         <Text size="sm" fw={700}>
           {title}
