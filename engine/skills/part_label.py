@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-PartLabel = Annotated[str, Meta(description="Name of the part in messages")]
+PartLabel = Annotated[str, Meta(description="Name of the part in messages", extra_json_schema={"cell_label": "part"})]
 
 
 def part_label(part: str) -> str:

@@ -49,7 +49,13 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
         Compliance()
     )
     slow_per_n: Annotated[float, Meta(ge=0, description="Slow-down of the motion per newton of force error")] = 0.0
-    learned: Annotated[str, Meta(description="Entry of kind `cart_offsets` to read and write; empty for none")] = ""
+    learned: Annotated[
+        str,
+        Meta(
+            description="Entry of kind `cart_offsets` to read and write; empty for none",
+            extra_json_schema={"new_entry": "cart_offsets"},
+        ),
+    ] = ""
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
-
-from msgspec import Meta
+from typing import Any, ClassVar
 
 from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import EntryNotFound
 from engine.skills import entries
 from engine.state import Context, Outcome, State, nothing_to_undo
+from states.store.store_parameter_types import EntryKindName, StoredEntryName
 
 
 class ReadEntry(State, frozen=True, kw_only=True):
@@ -23,8 +22,8 @@ class ReadEntry(State, frozen=True, kw_only=True):
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"missing": ("value", "revision")}
     undo = nothing_to_undo
 
-    kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
-    name: Annotated[str, Meta(description="Name of the entry")]
+    kind: EntryKindName
+    name: StoredEntryName
 
     async def run(self, ctx: Context) -> Outcome:
         """Read from the store; a missing entry gives the outcome `missing`, a store failure raises an error."""

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
-
-from msgspec import Meta
+from typing import Any, ClassVar
 
 from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import EntryConflict
 from engine.skills import entries
 from engine.state import Context, Outcome, State
+from states.store.store_parameter_types import EntryKindName, NewEntryName
 
 
 class WriteEntry(State, frozen=True, kw_only=True):
@@ -26,8 +25,8 @@ class WriteEntry(State, frozen=True, kw_only=True):
     outputs: ClassVar[Mapping[str, Any]] = {"revision": int}
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"conflict": ("revision",)}
 
-    kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
-    name: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"new_entry_of": "kind"})]
+    kind: EntryKindName
+    name: NewEntryName
 
     async def run(self, ctx: Context, *, value: dict[str, object], expected_revision: int | None = None) -> Outcome:
         """Write to the store; a value that the store refuses raises an error."""
