@@ -1,6 +1,6 @@
 /** From JSON Schema to fields. */
 import { expect, it } from 'vitest'
-import { editFieldOf, fieldProblem, fittingNames, limitsText, looseValue, typedValue } from './fields'
+import { editFieldOf, fieldProblem, limitsText, looseValue, typedValue, withField } from './fields'
 
 const key = (schema: Record<string, unknown>, more = {}) => editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
 
@@ -35,14 +35,28 @@ it('knows vectors, choices, and targets that are named entries', () => {
   expect(key({ type: 'string', entry: 'dmp' })).toMatchObject({ kind: 'entry', entryKind: 'dmp', isPlainEntry: true })
 })
 
-it('offers the names of the cell, of a robot those of the robot that is given', () => {
-  const names = { robot: ['left', 'right'], link: ['left/hand', 'left/arm', 'right/hand', 'leftover/x'] }
-  const robot = key({ type: 'string', cell_name: 'robot' })
-  const link = key({ anyOf: [{ type: 'string', cell_name: 'link', of: 'robot' }, { type: 'null' }] })
-  expect(fittingNames(robot, names, {})).toEqual(['left', 'right'])
-  expect(fittingNames(link, names, { robot: 'left' })).toEqual(['hand', 'arm'])
-  expect(fittingNames(link, names, {})).toEqual([])
-  expect(fittingNames(key({ type: 'string' }), names, {})).toEqual([])
+it('knows the fields of a value, and of a target those beside its entry', () => {
+  const target = {
+    $defs: {
+      Target: {
+        type: 'object',
+        properties: { entry: { type: 'string', entry: 'pose' }, frame: { type: 'string', cell_name: 'frame', or: ['part'], default: 'world' } },
+      },
+    },
+    anyOf: [{ $ref: '#/$defs/Target' }, { type: 'array', items: { type: 'number' }, joints_of: 'robot' }],
+  }
+  const field = key(target)
+  expect(field).toMatchObject({ kind: 'entry', jointsOf: 'robot' })
+  expect(field.properties).toMatchObject([{ name: 'frame', nameKind: 'frame', namesBeside: ['part'], fallback: 'world', required: false }])
+  const low = { type: 'array', prefixItems: [{ type: 'number' }, { type: 'number' }], parts: ['low', 'high'] }
+  const region = key({ type: 'object', required: ['height_m'], properties: { height_m: low } })
+  expect(region).toMatchObject({ kind: 'record', properties: [{ kind: 'vector', parts: ['low', 'high'], required: true }] })
+})
+
+it('changes one field of a value, and leaves nothing where none is left', () => {
+  expect(withField({ a: 1, b: 2 }, 'a', undefined)).toEqual({ b: 2 })
+  expect(withField({ a: 1 }, 'b', 2)).toEqual({ a: 1, b: 2 })
+  expect(withField({ a: 1 }, 'a', undefined)).toBeUndefined()
 })
 
 it('asks for a value where one is required', () => {

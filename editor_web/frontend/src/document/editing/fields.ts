@@ -1,11 +1,11 @@
 /** From a state's JSON Schema to the fields of the editor's form, and values to and from what is typed. Pure. */
 import type { KeyView } from '../../api/types'
-import { lookup, type Dict } from '../dict'
+import { lookup, without, type Dict } from '../dict'
 import { isJson } from '../schema'
 
 export type Schema = Dict<unknown>
 
-export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'data'
+export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'record' | 'data'
 
 export interface EditField {
   readonly name: string
@@ -24,17 +24,35 @@ export interface EditField {
   /** Kind of the named entries that fit; the whole value is the name where `isPlainEntry`. */
   readonly entryKind: string
   readonly isPlainEntry: boolean
+  /** The parameter that names the kind of entry, where the value is the name of one. */
+  readonly entryOf: string
   /** Kind of names of the cell that fit; empty for none. */
   readonly nameKind: string
+  /** Another name is no mistake: it is one for messages, or that of an entry or thing to be made. */
+  readonly isFreeName: boolean
+  /** Names that always fit beside those of the cell. */
+  readonly namesBeside: readonly string[]
+  /** Values that are usual, where others are possible. */
+  readonly examples: readonly string[]
   /** The parameter that names what the name is of: the robot of a link. */
   readonly nameOf: string
+  /** The parameter that names the arm whose joints the value may be; empty where it is no configuration. */
+  readonly jointsOf: string
+  /** The fields of a value that has fields; without `entry`, which stands for the whole value. */
+  readonly properties: readonly EditField[]
   readonly fallback: unknown
 }
 
 /** Describe one parameter of a state as a field. */
 export function editFieldOf(key: KeyView): EditField {
-  const definitions = record(key.schema['$defs'])
-  const { schema, isNullable } = resolved(key.schema, definitions)
+  return fieldFrom(key, record(key.schema['$defs']), 0)
+}
+
+// A target has fields, and those of a frame are plain.
+const DEEPEST = 3
+
+function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField {
+  const { schema, isNullable, jointsOf } = resolved(key.schema, definitions)
   const combined = { ...schema, ...withoutShape(key.schema) }
   const properties = record(schema['properties'])
   const entry = record(properties['entry'])
@@ -42,12 +60,21 @@ export function editFieldOf(key: KeyView): EditField {
   const parts = partsOf(schema)
   const plainEntry = text(combined['entry'])
   const isTarget = 'entry' in properties
+  const required = Array.isArray(schema['required']) ? schema['required'] : []
+  const inner = Object.entries(depth < DEEPEST ? properties : {})
+    .filter(([name]) => name !== 'entry')
+    .map(([name, each]) =>
+      fieldFrom({ name, required: required.includes(name), default: record(each)['default'], schema: record(each) }, definitions, depth + 1),
+    )
+  const newEntry = text(combined['new_entry']) || text(combined['new_entry_of'])
+  const label = text(combined['cell_label'])
   return {
     name: key.name,
     kind: kindOf(schema, {
       isEntry: plainEntry !== '' || isTarget,
       hasChoices: choices.length > 0,
       isVector: parts.length > 0,
+      isRecord: inner.length > 0,
     }),
     description: text(combined['description']),
     unit: text(combined['unit']),
@@ -58,15 +85,23 @@ export function editFieldOf(key: KeyView): EditField {
     isOpenBelow: schema['exclusiveMinimum'] !== undefined,
     choices,
     parts,
-    entryKind: plainEntry || text(entry['entry']),
+    entryKind: plainEntry || text(entry['entry']) || text(combined['new_entry']),
     isPlainEntry: plainEntry !== '' && !isTarget,
-    nameKind: text(combined['cell_name']),
+    entryOf: text(combined['entry_of']) || text(combined['new_entry_of']),
+    nameKind: text(combined['cell_name']) || label,
+    isFreeName: label !== '' || newEntry !== '' || text(combined['entry_of']) !== '',
+    namesBeside: Array.isArray(combined['or']) ? combined['or'].map(String) : [],
+    examples: Array.isArray(combined['examples']) ? combined['examples'].map(String) : [],
     nameOf: text(combined['of']),
+    jointsOf,
+    properties: inner,
     fallback: key.default,
   }
 }
 
-const KEPT_BESIDE = new Set(['description', 'unit', 'entry', 'cell_name', 'of'])
+const KEPT_BESIDE = new Set([
+  'description', 'unit', 'entry', 'entry_of', 'new_entry', 'new_entry_of', 'cell_name', 'cell_label', 'of', 'or', 'examples',
+]) // oxfmt-ignore
 
 function withoutShape(schema: Schema): Dict<unknown> {
   return Object.fromEntries(Object.entries(schema).filter(([key]) => KEPT_BESIDE.has(key)))
@@ -75,6 +110,7 @@ function withoutShape(schema: Schema): Dict<unknown> {
 interface Resolved {
   readonly schema: Schema
   readonly isNullable: boolean
+  readonly jointsOf: string
 }
 
 /** Follow references, and take the first alternative that is not `null`; what stands beside it counts too. */
@@ -82,17 +118,23 @@ function resolved(schema: Schema, definitions: Schema): Resolved {
   const reference = text(schema['$ref']).replace('#/$defs/', '')
   if (reference) return resolved(record(lookup(definitions, reference)), definitions)
   const options = Array.isArray(schema['anyOf']) ? schema['anyOf'].map(record) : []
-  if (options.length === 0) return { schema, isNullable: schema['type'] === 'null' }
-  const real = options.filter((option) => option['type'] !== 'null').map((option) => resolved(option, definitions).schema)
+  if (options.length === 0) return { schema, isNullable: schema['type'] === 'null', jointsOf: text(schema['joints_of']) }
+  const all = options.map((option) => resolved(option, definitions))
+  const real = options.flatMap((option, at) => (option['type'] === 'null' ? [] : (all[at]?.schema ?? [])))
   const target = real.find((option) => 'entry' in record(option['properties']))
   const chosen = real.length === 1 ? real[0] : target
-  return { schema: { ...chosen, ...withoutShape(schema) }, isNullable: real.length < options.length }
+  return {
+    schema: { ...chosen, ...withoutShape(schema) },
+    isNullable: real.length < options.length,
+    jointsOf: all.map((each) => each.jointsOf).find(Boolean) ?? '',
+  }
 }
 
-function kindOf(schema: Schema, is: { isEntry: boolean; hasChoices: boolean; isVector: boolean }): EditFieldKind {
-  if (is.isEntry) return 'entry'
-  if (is.hasChoices) return 'choice'
-  if (is.isVector) return 'vector'
+function kindOf(schema: Schema, is: Dict<boolean>): EditFieldKind {
+  if (is['isEntry']) return 'entry'
+  if (is['hasChoices']) return 'choice'
+  if (is['isVector']) return 'vector'
+  if (is['isRecord']) return 'record'
   const type = schema['type']
   if (type === 'number' || type === 'integer' || type === 'boolean') return type
   return type === 'string' ? 'text' : 'data'
@@ -100,9 +142,10 @@ function kindOf(schema: Schema, is: { isEntry: boolean; hasChoices: boolean; isV
 
 function partsOf(schema: Schema): readonly string[] {
   const items = Array.isArray(schema['prefixItems']) ? schema['prefixItems'].map(record) : []
-  if (schema['type'] !== 'array' || items.length === 0 || items.length > 4) return []
+  if (schema['type'] !== 'array' || items.length === 0 || items.length > 6) return []
   if (!items.every((item) => item['type'] === 'number' || item['type'] === 'integer')) return []
-  return ['x', 'y', 'z', 'w'].slice(0, items.length)
+  if (Array.isArray(schema['parts'])) return schema['parts'].map(String)
+  return (items.length > 4 ? ['x', 'y', 'z', 'rx', 'ry', 'rz'] : ['x', 'y', 'z', 'w']).slice(0, items.length)
 }
 
 function record(value: unknown): Schema {
@@ -128,18 +171,6 @@ export function limitsText({ minimum, maximum, isOpenBelow, unit }: EditField): 
           ? `≤ ${maximum}`
           : ''
   return [range, unit].filter(Boolean).join(' ')
-}
-
-/** The names of the cell that fit a field, given what the node is given for its other parameters. */
-export function fittingNames(
-  field: Pick<EditField, 'nameKind' | 'nameOf'>,
-  names: Dict<readonly string[]>,
-  parameters: Dict<unknown>,
-): readonly string[] {
-  const known = lookup(names, field.nameKind) ?? []
-  if (!field.nameOf) return known
-  const owner = `${text(lookup(parameters, field.nameOf))}/`
-  return known.filter((name) => name.startsWith(owner)).map((name) => name.slice(owner.length))
 }
 
 /** Is it written with `${…}`, and so only known when the node is entered? */
@@ -196,4 +227,10 @@ function flowValue(typed: string): unknown {
   } catch {
     return typed
   }
+}
+
+/** A value with one of its fields changed; without it where it is given no value, and undefined where nothing is left. */
+export function withField(value: Dict<unknown>, name: string, next: unknown): Dict<unknown> | undefined {
+  const changed = next === undefined ? without(value, name) : { ...value, [name]: next }
+  return Object.keys(changed).length > 0 ? changed : undefined
 }

@@ -1,7 +1,9 @@
 /** A field for a value that may hold `${…}`: names are offered while one is typed. What is typed counts when the field is left. */
 import { Box, Input, Paper, Text } from '@mantine/core'
+import { IconChevronDown } from '@tabler/icons-react'
 import { useEffect, useId, useRef, useState, type KeyboardEvent } from 'react'
 import { completed, openingAt, type Name } from '../../document/editing/completion'
+import type { Offer } from '../../document/editing/offers'
 import classes from './form.module.css'
 import { useNames } from './useNames'
 
@@ -15,15 +17,15 @@ export interface TemplateInputProps {
   readonly isMono?: boolean
   /** Several lines. */
   readonly isLong?: boolean
-  /** More to choose from than names, when the field is empty or holds no `${`. */
-  readonly options?: readonly string[]
+  /** More to choose from than names, when the field is empty or holds no `${`; what is said beside one is searched too. */
+  readonly options?: readonly (string | Offer)[]
   readonly inputMode?: 'decimal' | 'text'
   /** One of the options is pointed at, before it is taken; undefined when none is any more. */
   readonly onPoint?: (option: string | undefined) => void
 }
 
-interface Offer {
-  readonly items: readonly { readonly text: string; readonly detail: string; readonly name?: Name }[]
+interface Opened {
+  readonly items: readonly (Offer & { readonly name?: Name })[]
   readonly index: number
 }
 
@@ -32,7 +34,7 @@ const MOST = 30
 export function TemplateInput(props: TemplateInputProps) {
   const { label, value, onCommit, placeholder, describedBy, isInvalid, isMono, isLong, options, inputMode, onPoint } = props
   const [text, setText] = useState(value)
-  const [offer, setOffer] = useState<Offer>()
+  const [offer, setOffer] = useState<Opened>()
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null)
   const names = useNames()
   const id = useId()
@@ -55,10 +57,10 @@ export function TemplateInput(props: TemplateInputProps) {
       })
     } else if (options && !next.includes('${')) {
       const query = next.trim().toLowerCase()
-      const fitting = next === value ? options : options.filter((option) => option.toLowerCase().includes(query))
-      setOffer(
-        fitting.length > 0 ? { items: fitting.slice(0, MOST).map((option) => ({ text: option, detail: '' })), index: -1 } : undefined,
-      )
+      const fitting = options
+        .map((option) => (typeof option === 'string' ? { text: option, detail: '' } : option))
+        .filter((option) => next === value || `${option.text} ${option.detail}`.toLowerCase().includes(query))
+      setOffer(fitting.length > 0 ? { items: fitting.slice(0, MOST), index: -1 } : undefined)
     } else setOffer(undefined)
   }
 
@@ -104,6 +106,12 @@ export function TemplateInput(props: TemplateInputProps) {
     }
   }
 
+  /** It changes while the list is open. */
+  function detailNow(item: Offer): string {
+    const option = options?.find((each) => typeof each !== 'string' && each.text === item.text)
+    return typeof option === 'object' ? option.detail : item.detail
+  }
+
   const shared = {
     ref: field,
     id,
@@ -143,6 +151,9 @@ export function TemplateInput(props: TemplateInputProps) {
           aria-controls={`${id}-offer`}
           aria-activedescendant={offer && offer.index >= 0 ? `${id}-${offer.index}` : undefined}
           inputMode={inputMode}
+          rightSection={options && options.length > 0 ? <IconChevronDown size={14} aria-hidden /> : undefined}
+          rightSectionWidth={24}
+          rightSectionPointerEvents="none"
           onChange={(event) => {
             setText(event.currentTarget.value)
             look(event.currentTarget.value, event.currentTarget.selectionStart ?? 0)
@@ -175,11 +186,9 @@ export function TemplateInput(props: TemplateInputProps) {
               }}
             >
               <span>{item.text}</span>
-              {item.detail && (
-                <Text span inherit c="dimmed">
-                  {item.detail}
-                </Text>
-              )}
+              <Text span inherit c="dimmed" ta="right">
+                {detailNow(item)}
+              </Text>
             </li>
           ))}
           {offer.items.length === 0 && (
