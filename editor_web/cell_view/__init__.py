@@ -7,6 +7,7 @@ drag handles for the mouse.
 """
 
 from editor_web.cell_view.handles import DragHandle, HandlePull
+from editor_web.cell_view.layers.marks import NO_MARKS, Marks
 from editor_web.cell_view.past_view import PastViewState
 from editor_web.cell_view.rendering.layer_groups import LAYER_GROUPS, LayerGroup
 from editor_web.cell_view.rendering.viser_gateway import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, viser_page
@@ -15,12 +16,14 @@ from editor_web.cell_view.view import CellView
 __all__ = [
     "KEY_HEADER",
     "LAYER_GROUPS",
+    "NO_MARKS",
     "PAGE_HEADER",
     "ROLE_HEADER",
     "CellView",
     "DragHandle",
     "HandlePull",
     "LayerGroup",
+    "Marks",
     "PastViewState",
     "viser_page",
 ]

@@ -13,6 +13,7 @@ import msgspec
 import viser
 
 from editor_web.cell_view.handles import DragHandle, DragHandles
+from editor_web.cell_view.layers.marks import Marks
 from editor_web.cell_view.layers.path_view import interpolate_joints
 from editor_web.cell_view.layers.scene_layers import SceneLayers
 from editor_web.cell_view.page_cameras import PageCameras
@@ -112,6 +113,11 @@ class CellView:
         """Show a preview of an arm to a page, until another one has the same place; the state `none` hides it."""
         if self._ghosts is not None:
             self._ghosts.put(page, preview, place=place)
+
+    def show_marks(self, page: str, marks: Marks) -> None:
+        """Show points, a box or axes to a page, in the place of those before."""
+        if self._ghosts is not None:
+            self._ghosts.mark(page, marks)
 
     def scrub_path(self, page: str, robot: str, share: float | None) -> None:
         """Show on a page where an arm is at a share, 0 to 1, of its proposed path; None shows nothing more.

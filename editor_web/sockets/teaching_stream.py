@@ -11,7 +11,7 @@ import msgspec
 from fastapi import Query, Request, Response, WebSocket
 from msgspec.structs import asdict
 
-from editor_web.cell_view import CellView
+from editor_web.cell_view import NO_MARKS, CellView, Marks
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, run_while_connected
 from editor_web.routes.services import ServicesOf, role_of, services_of
 from editor_web.routes.wire_router import WireRouter
@@ -22,7 +22,14 @@ from editor_web.teaching.buttons import PressedButtons
 from editor_web.teaching.jog_readiness import JogPreparation
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.playback import play
-from editor_web.teaching.taught_entries import compare_primitive, read_taught, search_entries, trace, write_tags
+from editor_web.teaching.taught_entries import (
+    TaughtData,
+    compare_primitive,
+    read_taught,
+    search_entries,
+    trace,
+    write_tags,
+)
 from editor_web.teaching.teaching_messages import (
     ArmsLiveFrame,
     ButtonInput,
@@ -40,6 +47,7 @@ from editor_web.teaching.teaching_messages import (
     PrimitiveComparison,
     PushToolBody,
     RefusedFrame,
+    ShowMarks,
     StartJog,
     StopJog,
     TagsBody,
@@ -148,6 +156,7 @@ class _Page:
         self._is_hand_changed = True
         self._are_entries_changed = False
         self._held_by = ""
+        self._has_marks = False
         self._previews: set[tuple[str, int]] = set()
         self._preview_tasks: dict[int, asyncio.Task[None]] = {}
 
@@ -164,6 +173,8 @@ class _Page:
         await self._preparation.close()
         await self._buttons.release()
         await self._clear_previews()
+        if self._has_marks:
+            self._mark(NO_MARKS)
         for unsubscribe in self._unsubscribe:
             unsubscribe()
 
@@ -174,6 +185,8 @@ class _Page:
                 await self._clear_previews(request.place)
                 if request.arm:
                     self._preview_tasks[request.place] = asyncio.create_task(self._preview(request), name="teach-look")
+            case ShowMarks():
+                self._mark(request)
             case _ if not self._may_operate:
                 self._waiting.append(
                     RefusedFrame(what="jog", message="you may look only", hint="log in with the operator token")
@@ -242,7 +255,12 @@ class _Page:
 
     async def _preview(self, request: PreviewTaught) -> None:
         try:
-            motion = await trace(self._backend.bus, request.arm, await read_taught(self._backend.bus, request))
+            bus = self._backend.bus
+            given = request.value
+            taught = (
+                TaughtData(kind=request.kind, value=given) if given is not None else await read_taught(bus, request)
+            )
+            motion = await trace(bus, request.arm, taught)
         except FlexcellError as error:
             self._waiting.append(RefusedFrame(what="look", message=error.message, hint=error.hint or ""))
             return
@@ -261,6 +279,11 @@ class _Page:
                 ),
                 place=request.place,
             )
+
+    def _mark(self, marks: Marks) -> None:
+        if self._view is not None:
+            self._has_marks = not marks.is_empty
+            self._view.show_marks(self._name, marks)
 
     async def _clear_previews(self, place: int = 0) -> None:
         """Clear the preview at a place; `place` 0 clears all."""

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from editor_web.cell_view import Marks
 from editor_web.http_bodies.common_bodies import Name, RequestBody
 from engine.messages import RobotDescription
 from engine.skills.dmp import CartFit, JointFit
@@ -140,11 +141,17 @@ class TaughtReference(msgspec.Struct, frozen=True, kw_only=True):
 class PreviewTaught(TaughtReference, frozen=True, kw_only=True, tag="look", tag_field="k"):
     """From the page: preview this arm along an entry or a capture; without an arm, clear the preview.
 
-    `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour.
+    `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. `value` is shown in the
+    place of an entry: the fields of one of this `kind`.
     """
 
     arm: Name = ""
+    value: dict[str, object] | None = None
     place: Annotated[int, Meta(ge=0, le=4)] = 0
+
+
+class ShowMarks(Marks, frozen=True, kw_only=True, tag="mark", tag_field="k"):
+    """From the page: what is marked in its 3D view, in the place of what was before."""
 
 
 class PrimitiveComparison(msgspec.Struct, frozen=True, kw_only=True):
@@ -204,4 +211,4 @@ ToPage = (
     | JogBlockFrame
     | RefusedFrame
 )
-FromPage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
+FromPage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks

@@ -16,7 +16,12 @@ ApproachSpeed = Annotated[
     float, msgspec.Meta(gt=0.0, le=0.25, description="Maximum speed on the path", extra_json_schema={"unit": "m/s"})
 ]
 ContactForce = Annotated[
-    float, msgspec.Meta(gt=0.0, description="Force that counts as a contact", extra_json_schema={"unit": "N"})
+    float,
+    msgspec.Meta(
+        gt=0.0,
+        description="Force that counts as a contact",
+        extra_json_schema={"unit": "N", "measured_on": "wrench"},
+    ),
 ]
 
 

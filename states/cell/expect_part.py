@@ -18,14 +18,15 @@ from states.scene.scene_parameter_types import PartName
 
 Pair = tuple[float, float]
 Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
+_METRES = {"unit": "m"}
 
 
 class Region(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rectangle along the world axes: centre, full edge lengths, and optionally a height range."""
 
-    center_m: Pair
-    size_m: tuple[Metres, Metres]
-    height_m: Pair | None = None
+    center_m: Annotated[Pair, Meta(extra_json_schema=_METRES)]
+    size_m: Annotated[tuple[Metres, Metres], Meta(extra_json_schema=_METRES)]
+    height_m: Annotated[Pair, Meta(extra_json_schema={**_METRES, "parts": ["low", "high"]})] | None = None
 
     def contains(self, xyz: Vector3) -> bool:
         """Return whether a point lies inside, edges included."""

@@ -15,7 +15,15 @@ from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 
-Force = Annotated[float, Meta(gt=0, le=1000, description="Grasp force", extra_json_schema={"unit": "N"})]
+Force = Annotated[
+    float,
+    Meta(
+        gt=0,
+        le=1000,
+        description="Grasp force",
+        extra_json_schema={"unit": "N", "measured_on": "gripper/state"},
+    ),
+]
 Margin = Annotated[
     float,
     Meta(ge=0, description="Allowed deviation of the final opening from `width_m`", extra_json_schema={"unit": "m"}),

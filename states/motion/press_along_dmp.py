@@ -38,7 +38,10 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     dmp: Annotated[CartDmpEntry, Meta(description="`{entry: name}` of kind `cart_dmp`")]
     force_n: Annotated[
         Vector3,
-        Meta(description="Desired force of the environment on the tool, task frame", extra_json_schema={"unit": "N"}),
+        Meta(
+            description="Desired force of the environment on the tool, task frame",
+            extra_json_schema={"unit": "N", "measured_on": "wrench"},
+        ),
     ]
     torque_nm: Annotated[Vector3, Meta(description="Desired torque, task frame", extra_json_schema={"unit": "N*m"})] = (
         0,

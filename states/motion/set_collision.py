@@ -11,7 +11,10 @@ from engine.state import Context, Outcome, State
 from states.call_or_fail import call_or_fail
 from states.motion.motion_target import RobotName
 
-Force = Annotated[float, Meta(gt=0, description="External force at the tool", extra_json_schema={"unit": "N"})]
+Force = Annotated[
+    float,
+    Meta(gt=0, description="External force at the tool", extra_json_schema={"unit": "N", "measured_on": "wrench"}),
+]
 
 
 class SetCollision(State, frozen=True, kw_only=True):

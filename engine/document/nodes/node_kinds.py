@@ -29,12 +29,12 @@ from engine.document.nodes.node_spec import (
 
 @dataclass(frozen=True, kw_only=True)
 class KindField:
-    """A field in the form of a node; a switch is on where the document says nothing."""
+    """A field in the form of a node; a switch is on where the document says nothing, a list may be written out."""
 
     key: str
     label: str
     hint: str
-    control: Literal["switch", "text"]
+    control: Literal["list", "switch", "text"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,10 +68,16 @@ class NodeKind:
     def form(self) -> tuple[KindField, ...]:
         """The fields that forms show, in order."""
         return tuple(
-            KindField(key=key, label=shown.label, hint=shown.hint, control="switch" if kind is bool else "text")
+            KindField(key=key, label=shown.label, hint=shown.hint, control=_control(kind))
             for key, kind, shown in (_form_fields(self.model) if self.model is not None else ())
             if shown.label
         )
+
+
+def _control(kind: object) -> Literal["list", "switch", "text"]:
+    if kind is bool:
+        return "switch"
+    return "list" if list[object] in get_args(kind) else "text"
 
 
 def _form_fields(model: type[Struct]) -> Iterator[tuple[str, object, FormField]]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
+import pytest
 import viser
 
-from editor_web.cell_view import CellView
+from editor_web.cell_view import NO_MARKS, CellView, Marks
+from editor_web.cell_view.layers.marks import MarkLayer
 from editor_web.cell_view.layers.path_view import GhostLayer, PathLayer
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.skills.planning import PathPreview
@@ -95,3 +97,33 @@ async def test_a_page_that_loads_its_view_again_still_sees_its_ghost() -> None:
         for _ in range(2):
             async with viser_page(view, "mine") as page:
                 await page.until(lambda page=page: page.is_seen("/taught/left.0/ghost"))
+
+
+def test_marks_take_the_place_of_those_before(server: viser.ViserServer) -> None:
+    """Points, then a box with the axes of a pose, then nothing."""
+    layer = MarkLayer(server)
+    layer.draw(Marks(points=((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))))
+    point = server.scene.get_handle_by_name("/taught/marks/1")
+    assert point is not None
+    assert tuple(point.position) == (0.4, 0.5, 0.6)
+    layer.draw(Marks(box=((0.0, 0.0, 0.1), (0.2, 0.4, 0.3)), axes=((1.0, 2.0, 3.0), (1.0, 0.0, 0.0, 0.0))))
+    assert server.scene.get_handle_by_name("/taught/marks/1") is None
+    box = server.scene.get_handle_by_name("/taught/marks/box")
+    axes = server.scene.get_handle_by_name("/taught/marks/axes")
+    assert isinstance(box, viser.BoxHandle)
+    assert axes is not None
+    assert box.dimensions == pytest.approx((0.2, 0.4, 0.2))
+    assert tuple(box.position) == pytest.approx((0.1, 0.2, 0.2))
+    assert (tuple(axes.position), tuple(axes.wxyz)) == ((1.0, 2.0, 3.0), (0.0, 1.0, 0.0, 0.0))
+    layer.draw(NO_MARKS)
+    assert server.scene.get_handle_by_name("/taught/marks/box") is None
+
+
+async def test_only_the_page_that_asked_sees_marks() -> None:
+    """They go when it asks for none."""
+    async with opened() as view, viser_page(view, "mine") as mine, viser_page(view, "yours") as yours:
+        view.show_marks("mine", Marks(points=((0.0, 0.0, 0.5),)))
+        await mine.until(lambda: mine.is_seen("/taught/marks/0"))
+        assert not yours.is_seen("/taught/marks/0")
+        view.show_marks("mine", NO_MARKS)
+        await mine.until(lambda: not mine.is_seen("/taught/marks/0"))

@@ -1259,12 +1259,12 @@ export interface KeyWriter {
   readonly name: string
 }
 
-/** A field in the form of a node; a switch is on where the document says nothing. */
+/** A field in the form of a node; a switch is on where the document says nothing, a list may be written out. */
 export interface KindField {
   readonly key: string
   readonly label: string
   readonly hint: string
-  readonly control: "switch" | "text"
+  readonly control: "list" | "switch" | "text"
 }
 
 /** The lease of `resource`: its run, node and goal, which may be empty, and its duration. */
@@ -1817,7 +1817,7 @@ export interface PrepareJogging {
   readonly arm: string
 }
 
-/** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
+/** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. `value` is shown in the place of an entry: the fields of one of this `kind`. */
 export interface PreviewTaught {
   readonly k: "look"
   readonly kind?: string
@@ -1825,6 +1825,7 @@ export interface PreviewTaught {
   readonly capture?: number
   readonly revision?: number
   readonly arm?: string
+  readonly value?: Dict<unknown> | null
   readonly place?: number
 }
 
@@ -2281,6 +2282,14 @@ export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
+}
+
+/** From the page: what is marked in its 3D view, in the place of what was before. */
+export interface ShowMarks {
+  readonly k: "mark"
+  readonly points?: readonly (readonly [number, number, number])[]
+  readonly box?: readonly [readonly [number, number, number], readonly [number, number, number]] | null
+  readonly axes?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
 }
 
 /** A request to shrink a failing run; `same` is what must stay the same: how it ends, or its root cause too. */
@@ -2912,4 +2921,4 @@ export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
 export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | JogReadiness | JogBlockFrame | RefusedFrame
 
-export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
+export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks

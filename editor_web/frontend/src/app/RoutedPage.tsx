@@ -23,6 +23,7 @@ const TrendPage = lazyView(async () => (await import('./TrendPage')).TrendPage)
 const SweepsPage = lazyView(async () => (await import('./SweepsPage')).SweepsPage)
 const SweepPage = lazyView(async () => (await import('./SweepPage')).SweepPage)
 const EditorPage = lazyView(async () => (await import('../features/editor/EditorPage')).EditorPage)
+const EditorWizard = lazyView(async () => (await import('./EditorWizard')).EditorWizard)
 const EditorPreview = lazyView(async () => (await import('./EditorPreview')).EditorPreview)
 
 export interface RoutedPageProps {
@@ -100,6 +101,7 @@ function Edit({ id, session, isNarrow, onOpen }: RoutedPageProps & { readonly id
     <ViewBoundary name="Preview">
       <Suspense fallback={null}>
         <EditorPreview isNarrow={isNarrow} />
+        <EditorWizard hasView={hasCellView(session)} isNarrow={isNarrow} />
       </Suspense>
     </ViewBoundary>
   )

@@ -8,11 +8,15 @@ import { ViewBoundary } from './ViewBoundary'
 export interface DialogProps {
   readonly isOpen: boolean
   readonly title: string
+  /** There is room for a view beside what is said. */
+  readonly isWide?: boolean
   readonly onClose: () => void
   readonly children: ReactNode
 }
 
-export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
+const WIDE = { width: 'min(68rem, calc(100vw - 24px))', maxWidth: 'none' } as const
+
+export function Dialog({ isOpen, title, isWide = false, onClose, children }: DialogProps) {
   const element = useRef<HTMLDialogElement>(null)
   const id = useId()
   useModal(element, isOpen)
@@ -22,6 +26,7 @@ export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
     <dialog
       ref={element}
       className={`dialog ${classes.dialog}`}
+      style={isWide ? WIDE : undefined}
       aria-labelledby={id}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}

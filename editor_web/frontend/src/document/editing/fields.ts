@@ -38,6 +38,8 @@ export interface EditField {
   readonly nameOf: string
   /** The parameter that names the arm whose joints the value may be; empty where it is no configuration. */
   readonly jointsOf: string
+  /** The topic below the name of the robot that tells how great the quantity is now; empty for none. */
+  readonly measuredOn: string
   /** The fields of a value that has fields; without `entry`, which stands for the whole value. */
   readonly properties: readonly EditField[]
   readonly fallback: unknown
@@ -94,13 +96,14 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
     examples: Array.isArray(combined['examples']) ? combined['examples'].map(String) : [],
     nameOf: text(combined['of']),
     jointsOf,
+    measuredOn: text(combined['measured_on']),
     properties: inner,
     fallback: key.default,
   }
 }
 
 const KEPT_BESIDE = new Set([
-  'description', 'unit', 'entry', 'entry_of', 'new_entry', 'new_entry_of', 'cell_name', 'cell_label', 'of', 'or', 'examples',
+  'description', 'unit', 'entry', 'entry_of', 'new_entry', 'new_entry_of', 'cell_name', 'cell_label', 'of', 'or', 'examples', 'measured_on',
 ]) // oxfmt-ignore
 
 function withoutShape(schema: Schema): Dict<unknown> {

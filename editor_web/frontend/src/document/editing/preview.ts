@@ -17,8 +17,8 @@ export const PLACED: Dict<string> = {
   cart_dmp: 'Motion, tool',
 }
 
-// The names that states give their arm.
-const ARM_KEYS = ['robot', 'arm']
+// The names that states give their arm; that of a tool is the arm's.
+const ARM_KEYS = ['robot', 'arm', 'gripper', 'hand', 'magnet']
 const REFERENCE = /^\$\{\s*([A-Za-z_]\w*)\s*\}$/
 
 /** The name of an entry in the value of a parameter: the value itself, or beside what else is said of it. */

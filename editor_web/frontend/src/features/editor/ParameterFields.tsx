@@ -1,16 +1,19 @@
 /** The parameters of a state or behavior, each in the field that fits it; `${…}` is possible in all of them. */
 import { lookup } from '../../document/dict'
 import { Flex, Space, Stack, Text } from '@mantine/core'
-import { IconBraces, IconX } from '@tabler/icons-react'
+import { IconBraces, IconGauge, IconX } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import type { KeyView } from '../../api/types'
 import { editFieldOf, fieldProblem, isTemplate, limitsText, shownValue, typedValue, type EditField } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
 import { unknownName, type Surroundings } from '../../document/editing/offers'
+import { armOf } from '../../document/editing/preview'
 import { perform } from './apply'
 import { FormWords } from './FormParts'
+import { MeasuredNow } from './MeasuredNow'
 import { ParameterInput } from './ParameterInput'
 import { FieldPreview } from './ShowEntry'
+import { TeachTool } from './TeachTool'
 import { TemplateInput } from './TemplateInput'
 import { Tool } from './Tool'
 import { useSurroundings } from './useSurroundings'
@@ -44,6 +47,7 @@ function ParameterRow({ node, field, around }: { node: EditNode; field: EditFiel
   const value = lookup(node.parameters, field.name)
   const [asTemplate, setAsTemplate] = useState(isTemplate(value))
   const [pointed, setPointed] = useState<string>()
+  const [isMeasured, setMeasured] = useState(false)
   const problem = fieldProblem(field, value) ?? unknownName(field, value, around)
   const hintId = useId()
   const limits = limitsText(field)
@@ -74,6 +78,18 @@ function ParameterRow({ node, field, around }: { node: EditNode; field: EditFiel
             <IconX size={13} aria-hidden />
           </Tool>
         )}
+        <TeachTool node={node} field={field} value={value} around={around} onSet={set} />
+        {field.measuredOn && (
+          <Tool
+            isSmall
+            isPressed={isMeasured}
+            label={`Show what is measured for ${field.name}`}
+            title="Show what is measured now"
+            onPress={() => setMeasured(!isMeasured)}
+          >
+            <IconGauge size={13} aria-hidden />
+          </Tool>
+        )}
         <Tool
           isSmall
           isPressed={isFree}
@@ -94,6 +110,7 @@ function ParameterRow({ node, field, around }: { node: EditNode; field: EditFiel
         onSet={set}
         onPoint={setPointed}
       />
+      {isMeasured && <MeasuredNow field={field} value={value} arm={armOf(node.parameters, around.parameters)} />}
       {field.kind === 'entry' && <FieldPreview node={node} field={field} value={value} entries={around.entries} pointed={pointed} />}
       <Text size="xs" mt={2} c={problem ? 'var(--failed)' : 'dimmed'} id={hintId}>
         {problem ?? field.description}

@@ -1,7 +1,9 @@
 /** The settings that only some kinds have: items and rounds, memory, policies, periods. */
 import { lookup } from '../../document/dict'
 import { Switch } from '@mantine/core'
+import { IconGridDots } from '@tabler/icons-react'
 import type { KindField } from '../../api/types'
+import { askWizard } from '../../api/valueWizard'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { looseValue, shownValue } from '../../document/editing/fields'
@@ -9,6 +11,7 @@ import { perform } from './apply'
 import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
+import { Tool } from './Tool'
 import { useEditor } from './store'
 
 export function SettingsForm({ node }: { node: EditNode }) {
@@ -35,6 +38,23 @@ export function SettingsForm({ node }: { node: EditNode }) {
               value={shownValue(lookup(node.settings, setting.key))}
               onCommit={(typed) => set(setting, typed === '' ? null : looseValue(typed))}
             />
+          )}
+          {setting.control === 'list' && (
+            <Tool
+              isSmall
+              label={`Teach ${setting.label} as a grid of poses`}
+              onPress={() =>
+                askWizard({
+                  kind: 'grid',
+                  title: `${setting.label.toLowerCase()} of ${node.name}`,
+                  arm: '',
+                  value: lookup(node.settings, setting.key),
+                  onSet: (value) => set(setting, value),
+                })
+              }
+            >
+              <IconGridDots size={13} aria-hidden />
+            </Tool>
           )}
         </FormLine>
       ))}

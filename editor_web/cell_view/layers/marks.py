@@ -1,0 +1,86 @@
+"""Marks of a page: the points, the box or the axes of a value that is being taught."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+import numpy as np
+import viser
+
+from editor_web.cell_view.rendering.canvas import TAUGHT, Canvas
+from editor_web.cell_view.rendering.geometry import Rgb
+from engine.messages import Quaternion, Vector3
+
+_COLOUR: Rgb = (37, 99, 235)
+_OPACITY = 0.25
+_POINT_M = 0.008
+_AXES_M = 0.1
+_AXES_RADIUS_M = 0.003
+
+
+_MOST_POINTS = 2500
+
+
+class Marks(msgspec.Struct, frozen=True, kw_only=True):
+    """What a page sees marked in the world: points, a box by its least and greatest coordinates, the axes of a pose.
+
+    Positions are in metres, the orientation is a quaternion x y z w.
+    """
+
+    points: Annotated[tuple[Vector3, ...], msgspec.Meta(max_length=_MOST_POINTS)] = ()
+    box: tuple[Vector3, Vector3] | None = None
+    axes: tuple[Vector3, Quaternion] | None = None
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is marked."""
+        return not self.points and self.box is None and self.axes is None
+
+
+NO_MARKS = Marks()
+
+
+class MarkLayer:
+    """Draws the marks of one page, even if planned paths are hidden."""
+
+    def __init__(self, server: Canvas) -> None:
+        self._server = server
+        self._drawn = NO_MARKS
+        self._handles: list[viser.SceneNodeHandle] = []
+
+    def draw(self, marks: Marks) -> None:
+        """Draw the marks in the place of those before."""
+        if marks == self._drawn:
+            return
+        self._drawn = marks
+        with self._server.atomic():
+            for handle in self._handles:
+                handle.remove()
+            self._handles = self._added(marks)
+
+    def _added(self, marks: Marks) -> list[viser.SceneNodeHandle]:
+        scene = self._server.scene
+        added: list[viser.SceneNodeHandle] = [
+            scene.add_icosphere(f"{TAUGHT}/marks/{at}", radius=_POINT_M, color=_COLOUR, position=xyz)
+            for at, xyz in enumerate(marks.points)
+        ]
+        if marks.box is not None:
+            low, high = (np.asarray(corner) for corner in marks.box)
+            size = tuple(float(edge) for edge in high - low)
+            center = tuple(float(each) for each in (low + high) / 2)
+            added.append(
+                scene.add_box(f"{TAUGHT}/marks/box", dimensions=size, position=center, color=_COLOUR, opacity=_OPACITY)
+            )
+        if marks.axes is not None:
+            xyz, (x, y, z, w) = marks.axes
+            added.append(
+                scene.add_frame(
+                    f"{TAUGHT}/marks/axes",
+                    axes_length=_AXES_M,
+                    axes_radius=_AXES_RADIUS_M,
+                    position=xyz,
+                    wxyz=(w, x, y, z),
+                )
+            )
+        return added

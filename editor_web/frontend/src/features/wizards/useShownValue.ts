@@ -1,0 +1,42 @@
+/** Shows what is being taught in the 3D view of this page, until something else is or the wizard ends. */
+import { useEffect } from 'react'
+import { clearTeachRefusal, sendToServer, useTeach } from '../../api/teaching'
+import type { PlacedPose, Vector } from '../../document/poses'
+
+export type ShownValue =
+  | { readonly kind: 'pose'; readonly pose: PlacedPose }
+  | { readonly kind: 'joints'; readonly joints: readonly number[] }
+  | { readonly kind: 'points'; readonly points: readonly Vector[] }
+  | { readonly kind: 'box'; readonly low: Vector; readonly high: Vector }
+
+/** Values that follow one another fast are not all shown: the arm would be looked for at each. */
+const PAUSE_MS = 200
+const NOTHING = { k: 'look', arm: '', kind: '', name: '', capture: 0, revision: 0, place: 0 } as const
+const NO_MARKS = { k: 'mark', points: [], box: null, axes: null } as const
+
+export function useShownValue(arm: string, value: ShownValue | undefined): void {
+  const isOpen = useTeach((s) => s.isOpen && s.arms !== undefined)
+  const said = JSON.stringify(value ?? null)
+  useEffect(() => {
+    if (!isOpen) return
+    const timer = setTimeout(() => show(arm, JSON.parse(said) as ShownValue | null), PAUSE_MS)
+    return () => clearTimeout(timer)
+  }, [isOpen, arm, said])
+  useEffect(() => () => show('', null), [])
+}
+
+function show(arm: string, value: ShownValue | null): void {
+  const ghost = value?.kind === 'pose' ? { ...value.pose, frame: 'world' } : value?.kind === 'joints' ? { joints: value.joints } : undefined
+  clearTeachRefusal('look')
+  sendToServer(ghost && arm ? { ...NOTHING, arm, kind: value?.kind ?? '', value: ghost } : NOTHING)
+  switch (value?.kind) {
+    case 'pose':
+      return sendToServer({ ...NO_MARKS, axes: [value.pose.xyz, value.pose.xyzw] })
+    case 'points':
+      return sendToServer({ ...NO_MARKS, points: value.points })
+    case 'box':
+      return sendToServer({ ...NO_MARKS, box: [value.low, value.high] })
+    default:
+      return sendToServer(NO_MARKS)
+  }
+}
