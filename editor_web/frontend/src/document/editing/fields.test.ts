@@ -40,7 +40,10 @@ it('knows the fields of a value, and of a target those beside its entry', () => 
     $defs: {
       Target: {
         type: 'object',
-        properties: { entry: { type: 'string', entry: 'pose' }, frame: { type: 'string', cell_name: 'frame', or: ['part'], default: 'world' } },
+        properties: {
+          entry: { type: 'string', entry: 'pose' },
+          frame: { type: 'string', cell_name: 'frame', or: ['part'], default: 'world' },
+        },
       },
     },
     anyOf: [{ $ref: '#/$defs/Target' }, { type: 'array', items: { type: 'number' }, joints_of: 'robot' }],

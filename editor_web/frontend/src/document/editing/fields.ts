@@ -66,7 +66,11 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
   const inner = Object.entries(depth < DEEPEST ? properties : {})
     .filter(([name]) => name !== 'entry')
     .map(([name, each]) =>
-      fieldFrom({ name, required: required.includes(name), default: record(each)['default'], schema: record(each) }, definitions, depth + 1),
+      fieldFrom(
+        { name, required: required.includes(name), default: record(each)['default'], schema: record(each) },
+        definitions,
+        depth + 1,
+      ),
     )
   const newEntry = text(combined['new_entry']) || text(combined['new_entry_of'])
   const label = text(combined['cell_label'])
@@ -103,8 +107,19 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
 }
 
 const KEPT_BESIDE = new Set([
-  'description', 'unit', 'entry', 'entry_of', 'new_entry', 'new_entry_of', 'cell_name', 'cell_label', 'of', 'or', 'examples', 'measured_on',
-]) // oxfmt-ignore
+  'description',
+  'unit',
+  'entry',
+  'entry_of',
+  'new_entry',
+  'new_entry_of',
+  'cell_name',
+  'cell_label',
+  'of',
+  'or',
+  'examples',
+  'measured_on',
+])
 
 function withoutShape(schema: Schema): Dict<unknown> {
   return Object.fromEntries(Object.entries(schema).filter(([key]) => KEPT_BESIDE.has(key)))

@@ -83,7 +83,11 @@ it('says what each thing is and how it is now', () => {
     cameras: {},
     tools: { left: { held: true, part: 'plate' } },
   }
-  const items = [item('robot', 'robots/left', 'panda'), item('tool', 'robots/left/gripper', 'panda_hand'), item('part', 'parts/plate', 'box')]
+  const items = [
+    item('robot', 'robots/left', 'panda'),
+    item('tool', 'robots/left/gripper', 'panda_hand'),
+    item('part', 'parts/plate', 'box'),
+  ]
   const open = { items, now: { robots, state }, outputs: [true, false] }
   const words = (field: ReturnType<typeof key>, given = {}) => offersOf(field, around({ open, given }))?.map((each) => each.detail)
   expect(words(ROBOT)).toEqual(['panda, carries out to tray', ''])

@@ -92,7 +92,9 @@ export function ParameterInput(props: ParameterInputProps) {
 }
 
 const NOTHING: readonly string[] = []
-const MOST_BESIDE = 3
+/** More numbers stand in rows of three. */
+const MOST_BESIDE = 4
+const IN_ROW = 3
 
 interface VectorProps {
   readonly label: string
@@ -105,7 +107,7 @@ interface VectorProps {
 function VectorInput({ label, field, value, onSet }: VectorProps) {
   const given = Array.isArray(value) ? (value as unknown[]) : undefined
   const base = given ?? (Array.isArray(field.fallback) ? (field.fallback as unknown[]) : field.parts.map(() => 0))
-  const columns = field.parts.length > MOST_BESIDE + 1 ? MOST_BESIDE : field.parts.length
+  const columns = field.parts.length > MOST_BESIDE ? IN_ROW : field.parts.length
   return (
     <SimpleGrid cols={columns} spacing={5} verticalSpacing={5}>
       {field.parts.map((part, index) => (
@@ -225,7 +227,15 @@ function EntryInput(props: EntryProps) {
   const { field, value, around, shared, onSet, onPoint } = props
   const named = nameIn(value)
   const isData = value !== undefined && value !== null && named === undefined
-  if (isData && recordOf(value) && field.properties.length > 0) return <RecordInput {...props} />
+  if (isData && recordOf(value) && field.properties.length > 0)
+    return (
+      <Stack gap={4}>
+        <RecordInput {...props} />
+        <Button variant="subtle" size="compact-xs" style={{ alignSelf: 'start' }} onClick={() => onSet(undefined)}>
+          Choose an entry instead
+        </Button>
+      </Stack>
+    )
   if (isData)
     return (
       <TemplateInput {...shared} isMono isLong value={shownValue(value)} onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))} />

@@ -20,7 +20,12 @@ interface TeachToolProps {
 export function TeachTool({ node, field, value, around, onSet }: TeachToolProps) {
   const kind = wizardOf(field)
   if (kind === undefined) return null
-  const request = { title: `${field.name} of ${node.name}`, arm: armOf(node.parameters, around.parameters), value, onSet }
+  const request = {
+    title: `${field.name} of ${node.name}`,
+    arm: armOf(node.parameters, around.parameters),
+    value: value ?? field.fallback,
+    onSet,
+  }
   return (
     <Tool isSmall label={`Teach ${field.name}`} title="Teach it on the cell" onPress={open}>
       <IconWand size={13} aria-hidden />

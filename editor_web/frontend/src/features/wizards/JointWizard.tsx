@@ -128,7 +128,8 @@ function numbersOf(value: unknown): readonly number[] | undefined {
 function jointFault(joints: readonly number[] | undefined, info: ArmInfo | undefined, arm: string): string | undefined {
   if (!joints) return 'Take the present joints, or move a slider'
   if (!info) return undefined
-  if (joints.length !== info.joint_names.length) return `${arm} has ${info.joint_names.length} joints, and not ${joints.length}: take them anew`
+  if (joints.length !== info.joint_names.length)
+    return `${arm} has ${info.joint_names.length} joints, and not ${joints.length}: take them anew`
   const at = joints.findIndex((value, index) => value < (info.lower_rad[index] ?? -Infinity) || value > (info.upper_rad[index] ?? Infinity))
   if (at < 0) return undefined
   const limits = [info.lower_rad[at], info.upper_rad[at]].map((each) => each?.toFixed(3)).join(' to ')

@@ -32,8 +32,8 @@ export function WizardFrame({ title, view, isNarrow, fault, onUse, onClose, chil
             </Text>
           )}
           {fault && (
-            <Alert color="yellow" p="xs" icon={<IconAlertTriangle size={16} aria-hidden />} role="status">
-              {fault}
+            <Alert variant="light" color="yellow" py={6} px="xs" icon={<IconAlertTriangle size={14} aria-hidden />} role="status">
+              <Text size="xs">{fault}</Text>
             </Alert>
           )}
           <Group gap="xs" justify="end">

@@ -81,7 +81,12 @@ it('takes the present pose of the tool, in the world', async () => {
 })
 
 it('gives a grasp as it is seen from the part that the state names', async () => {
-  const { user } = told({ ...POSE, frames: ['part', 'world'], value: { xyz: [0, 0, 0], frame: 'part' }, meant: (name) => (name === 'part' ? 'plate' : name) })
+  const { user } = told({
+    ...POSE,
+    frames: ['part', 'world'],
+    value: { xyz: [0, 0, 0], frame: 'part' },
+    meant: (name) => (name === 'part' ? 'plate' : name),
+  })
   server()
     .socket('/data')
     .tell({ k: 'cell', poses: { plate: { xyz: [0.5, 0, 0.25], xyzw: [0, 0, 0, 1], frame: 'world' } }, cameras: {}, tools: {} })
@@ -147,7 +152,9 @@ it('takes the joints of the arm, and refuses what is beyond a limit', async () =
 it('shows the arm in the joints that are set, after a moment', async () => {
   const { user, socket } = told({ ...REQUEST, kind: 'joints' })
   await press(user, 'Take the present joints')
-  await waitFor(() => expect(socket.sent).toContainEqual(expect.objectContaining({ k: 'look', arm: 'left', value: { joints: [0.5, -0.25] } })))
+  await waitFor(() =>
+    expect(socket.sent).toContainEqual(expect.objectContaining({ k: 'look', arm: 'left', value: { joints: [0.5, -0.25] } })),
+  )
 })
 
 it('makes a region of two corners that the tool touches', async () => {
@@ -159,7 +166,17 @@ it('makes a region of two corners that the tool touches', async () => {
   await user.click(screen.getByLabelText('Only between two heights'))
   await press(user, 'Use this value')
   expect(set).toHaveBeenCalledWith({ center_m: [0.5, 0], size_m: [0.2, 0.4], height_m: [0.1, 0.3] })
-  await waitFor(() => expect(socket.sent).toContainEqual(expect.objectContaining({ k: 'mark', box: [[0.4, -0.2, 0.1], [0.6, 0.2, 0.3]] })))
+  await waitFor(() =>
+    expect(socket.sent).toContainEqual(
+      expect.objectContaining({
+        k: 'mark',
+        box: [
+          [0.4, -0.2, 0.1],
+          [0.6, 0.2, 0.3],
+        ],
+      }),
+    ),
+  )
 })
 
 it('keeps the region of the document until another is taken, and refuses one without an area', async () => {
