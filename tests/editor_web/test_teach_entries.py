@@ -11,31 +11,15 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from engine.document import load_behavior
 from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import ReadEntry, ReadHistory, WriteEntry
 from engine.store.entry_kinds import Joints, decode_entry
-from tests.editor_web.browsing import Scheme, opened_page, require_accessible
-from tests.editor_web.limits import GUARD_MS
+from tests.editor_web.browsing import Scheme, require_accessible
 from tests.editor_web.teach_page import tab, teaching
 from tests.editor_web.teach_site import TeachSite
 from tests.robots.panda_arm import home
 
-GO = """\
-flexcell: 1
-name: go
-cell: cells/taught.yaml
-outcomes: [done]
-root:
-  machine:
-    initial: go
-    states:
-      go:
-        state: motion.MovePose
-        with: {robot: lft}
-        transitions: {reached: done, failed: done}
-"""
 TIMES = np.linspace(0.0, 1.0, 101)
 HOME = tuple(home().tolist())
 TURNED = (0.3, *HOME[1:])
@@ -65,36 +49,6 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
             entry = WriteEntry(kind=kind, name=name, value=value, tags=("station_1",), by="ana")
             opened.call(opened.bus.call(entry, to="store"))
         yield opened
-
-
-def test_a_pose_is_taught_from_its_field_in_the_editor(browser: Browser, site: TeachSite) -> None:
-    """Where the tool is now becomes the value of the document; the list of robots says what the arm does."""
-    file = site.project / "behaviors" / "go.yaml"
-    file.write_text(GO, encoding="utf-8")
-    with opened_page(browser, site.running, "/edit/behaviors/go.yaml#root/go") as page:
-        robot = page.get_by_role("combobox", name="robot", exact=True)
-        expect(page.get_by_text("The cell has no robot “lft”; it has: left")).to_be_visible(timeout=GUARD_MS)
-        robot.click()
-        page.get_by_role("option", name=re.compile("^left")).filter(has_text="panda, idle").click()
-        expect(page.get_by_text("The cell has no robot")).to_have_count(0)
-        page.get_by_role("button", name="Teach target", exact=True).click()
-        wizard = page.get_by_role("dialog", name="Teach target of go")
-        now = wizard.get_by_role("status", name="Present pose of the tool")
-        expect(now).to_contain_text("Tool now:", timeout=GUARD_MS)
-        wizard.get_by_role("button", name="Take the present pose").click()
-        require_accessible(page, "the wizard of a pose", part="dialog[open]")
-        place = wizard.get_by_role("textbox", name=re.compile("^Position [xyz]$"))
-        taken = [float(place.nth(axis).input_value()) for axis in range(3)]
-        assert now.inner_text().startswith("Tool now: " + ", ".join(f"{each:.4f}" for each in taken))
-        wizard.get_by_role("button", name="Use this value").click()
-        expect(page.get_by_role("group", name="target", exact=True)).to_be_visible()
-        page.get_by_role("button", name="Save", exact=True).click()
-        expect(page.get_by_role("button", name="Save", exact=True)).to_have_attribute("aria-disabled", "true")
-    ((_, go),) = [each for each in load_behavior(file).nodes() if each[0] == "root/go"]
-    target = go.parameters["target"]
-    assert isinstance(target, dict)
-    assert target["xyz"] == taken
-    assert np.linalg.norm(target["xyzw"]) == pytest.approx(1.0, abs=1e-4)
 
 
 def test_tags_are_changed_and_the_value_stays(browser: Browser, site: TeachSite) -> None:

@@ -67,10 +67,15 @@ class MarkLayer:
         ]
         if marks.box is not None:
             low, high = (np.asarray(corner) for corner in marks.box)
-            size = tuple(float(edge) for edge in high - low)
-            center = tuple(float(each) for each in (low + high) / 2)
+            x, y, z = (high - low).tolist()
             added.append(
-                scene.add_box(f"{TAUGHT}/marks/box", dimensions=size, position=center, color=_COLOUR, opacity=_OPACITY)
+                scene.add_box(
+                    f"{TAUGHT}/marks/box",
+                    dimensions=(x, y, z),
+                    position=(low + high) / 2,
+                    color=_COLOUR,
+                    opacity=_OPACITY,
+                )
             )
         if marks.axes is not None:
             xyz, (x, y, z, w) = marks.axes

@@ -12,12 +12,12 @@ interface MeasuredNowProps {
 }
 
 export function MeasuredNow({ field, value, arm }: MeasuredNowProps) {
-  const [told, setTold] = useState<{ readonly of: string; readonly value: unknown; readonly problem: string }>()
+  const [message, setMessage] = useState<{ readonly of: string; readonly value: unknown; readonly problem: string }>()
   const topic = arm ? `${arm}/${field.measuredOn}` : ''
   useData(topic ? { number: 0, traffic: false, topic, fields: [], run: '', goals: '', cell: false } : undefined, (frame) => {
-    if (frame.k === 'message') setTold({ of: frame.topic, value: frame.value, problem: frame.problem })
+    if (frame.k === 'message') setMessage({ of: frame.topic, value: frame.value, problem: frame.problem })
   })
-  const now = told?.of === topic ? told : undefined
+  const now = message?.of === topic ? message : undefined
   const measured = measuredOf(field.name, now?.value)
   const words = measured === undefined ? (obstacle(arm, now?.problem) ?? 'Nothing is measured yet') : measuredWords(measured, field.unit)
   const share = measured && shareOf(measured, value ?? field.fallback)

@@ -19,12 +19,12 @@ import { Tool } from './Tool'
 import { useSurroundings } from './useSurroundings'
 
 export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly KeyView[] }) {
-  const [isLooking, setLooking] = useState(false)
-  const around = useSurroundings(node, isLooking)
+  const [isFocused, setFocused] = useState(false)
+  const around = useSurroundings(node, isFocused)
   const known = new Set(keys.map((key) => key.name))
   const undeclared = Object.keys(node.parameters).filter((name) => !known.has(name))
   return (
-    <Stack gap="xs" data-parameters onFocus={() => setLooking(true)}>
+    <Stack gap="xs" data-parameters onFocus={() => setFocused(true)}>
       {keys.map((key) => (
         <ParameterRow key={key.name} node={node} field={editFieldOf(key)} around={around} />
       ))}

@@ -18,15 +18,15 @@ const NO_OUTPUTS: readonly boolean[] = []
 // What such a parameter names is there afterwards.
 const ADDS = ['new_cell_name', 'new_entry', 'new_entry_of']
 
-/** How the cell is now is asked for while `isLooking`: somebody has a field in hand. */
-export function useSurroundings(node: EditNode, isLooking: boolean): Surroundings {
+/** How the cell is now is asked for while `isFocused`: somebody has a field in hand. */
+export function useSurroundings(node: EditNode, isFocused: boolean): Surroundings {
   const catalogue = useEditor((s) => s.catalogue)
   const own = useEditor((s) => s.names)
   const root = useEditor(rootOf)
   const parameters = useEditor((s) => draftOf(s).document?.parameters) as Dict<Dict<unknown>> | undefined
   const names = own ?? catalogue?.names ?? NO_NAMES
   const isOpenCell = own === undefined || isSame(own, catalogue?.names ?? NO_NAMES)
-  const open = useOpenCell(armOf(node.parameters, parameters ?? NO_PARAMETERS), isLooking && isOpenCell)
+  const open = useOpenCell(armOf(node.parameters, parameters ?? NO_PARAMETERS), isFocused && isOpenCell)
   const added = useMemo(() => (root && catalogue ? addedNames(root, catalogue) : []), [root, catalogue])
   return {
     names,

@@ -43,12 +43,12 @@ interface PoseWizardProps {
 
 export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardProps) {
   const [arm, setArm] = useArm(asked.arm)
-  const [way, setWay] = useState<'place' | 'points'>('place')
+  const [method, setMethod] = useState<'place' | 'points'>('place')
   const [frame, setFrame] = useState(() => frameOf(asked.value))
   const [pose, setPose] = useState(() => poseOf(asked.value))
   const [cell, setCell] = useState<CellStateFrame>()
-  useData({ number: 0, traffic: false, topic: '', fields: [], run: '', goals: '', cell: true }, (told) => {
-    if (told.k === 'cell') setCell(told)
+  useData({ number: 0, traffic: false, topic: '', fields: [], run: '', goals: '', cell: true }, (message) => {
+    if (message.k === 'cell') setCell(message)
   })
   const tool = useTool(arm)
   const place = placeOf(asked.meant(frame), cell)
@@ -72,7 +72,7 @@ export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardPr
     setFrame(next)
   }
 
-  const fault = pose ? undefined : way === 'points' ? 'Take or type the three points' : 'Take the present pose, or type one'
+  const fault = pose ? undefined : method === 'points' ? 'Take or type the three points' : 'Take the present pose, or type one'
   return (
     <WizardFrame
       title={`Teach ${asked.title}`}
@@ -88,8 +88,8 @@ export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardPr
       <SegmentedControl
         size="xs"
         aria-label="How it is taught"
-        value={way}
-        onChange={setWay}
+        value={method}
+        onChange={setMethod}
         data={[
           { value: 'place', label: 'In place' },
           { value: 'points', label: 'By three points' },
@@ -109,7 +109,7 @@ export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardPr
           onChange={(event) => changeFrame(event.currentTarget.value)}
         />
       )}
-      {way === 'place' ? (
+      {method === 'place' ? (
         <TakePose arm={arm} obstacle={unplaced} tool={tool} onTake={takeWorld} />
       ) : (
         <ThreePoints arm={arm} onMade={takeWorld} />

@@ -35,7 +35,7 @@ export function RegionWizard({ asked, jog, view, isNarrow, onClose }: PlainWizar
   }
 
   const { center, size, height } = region ?? { center: [0, 0], size: [0, 0], height: undefined }
-  const change = (told: Partial<Region>) => setRegion({ center: [0, 0], size: [0, 0], height: undefined, ...region, ...told })
+  const change = (changed: Partial<Region>) => setRegion({ center: [0, 0], size: [0, 0], height: undefined, ...region, ...changed })
   return (
     <WizardFrame
       title={`Teach ${asked.title}`}

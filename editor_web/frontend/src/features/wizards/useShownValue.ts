@@ -16,12 +16,12 @@ const NO_MARKS = { k: 'mark', points: [], box: null, axes: null } as const
 
 export function useShownValue(arm: string, value: ShownValue | undefined): void {
   const isOpen = useTeach((s) => s.isOpen && s.arms !== undefined)
-  const said = JSON.stringify(value ?? null)
+  const written = JSON.stringify(value ?? null)
   useEffect(() => {
     if (!isOpen) return
-    const timer = setTimeout(() => show(arm, JSON.parse(said) as ShownValue | null), PAUSE_MS)
+    const timer = setTimeout(() => show(arm, JSON.parse(written) as ShownValue | null), PAUSE_MS)
     return () => clearTimeout(timer)
-  }, [isOpen, arm, said])
+  }, [isOpen, arm, written])
   useEffect(() => () => show('', null), [])
 }
 
