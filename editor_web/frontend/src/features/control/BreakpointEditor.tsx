@@ -66,12 +66,13 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
   })
 
   function keep(change: Partial<CompleteBreakpoint>): void {
-    const fresh = { ...point, ...change }
+    // With what stands in the other field, of which the answer may be on its way.
+    const fresh = { ...point, if: typed.trim() || null, hits: Math.max(1, Number(hits) || 1), ...change }
     if (fresh.if === point.if && fresh.hits === point.hits && fresh.enabled === point.enabled) return
     void editBreakpoints((list) => replaced(list, fresh))
   }
 
-  const keepHits = () => keep({ hits: Math.max(1, Number(hits) || 1) })
+  const keepHits = () => keep({})
   return (
     <Stack gap="3xs" mt="4xs" ml={36}>
       <Group gap="2xs" wrap="nowrap" align="start">

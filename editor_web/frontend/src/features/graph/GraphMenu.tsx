@@ -27,9 +27,20 @@ export function GraphMenu({ behavior, node, breakpointForm, at, onClose }: Graph
   const anchor = <Box component="span" pos="fixed" w={0} h={0} left={at.x} top={at.y} />
   if (isForm) {
     return (
-      <Popover opened onDismiss={onClose} position="bottom-start" offset={2} withinPortal trapFocus returnFocus shadow="md" width={340}>
+      <Popover
+        withRoles={false}
+        opened
+        onDismiss={onClose}
+        position="bottom-start"
+        offset={2}
+        withinPortal
+        trapFocus
+        returnFocus
+        shadow="md"
+        width={340}
+      >
         <Popover.Target>{anchor}</Popover.Target>
-        <Popover.Dropdown aria-label={`Breakpoints of ${node.name}`}>
+        <Popover.Dropdown role="dialog" aria-label={`Breakpoints of ${node.name}`}>
           <Text size="sm" fw={620}>
             Breakpoints of {node.name}
           </Text>

@@ -31,7 +31,7 @@ export function KeyField({ row, onDone }: { readonly row: CommandRow; readonly o
   }
 
   return (
-    <Group gap="xs" pb={6} wrap="nowrap" align="start">
+    <Group gap="xs" pb={6} align="center">
       <TextInput
         size="xs"
         w="8.2rem"

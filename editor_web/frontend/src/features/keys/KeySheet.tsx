@@ -1,5 +1,5 @@
 /** Every command with its keys: changed by pressing others, each by itself or all set back. */
-import { ActionIcon, Button, CloseButton, Flex, Group, Kbd, SimpleGrid, Switch, Text, TextInput, Title } from '@mantine/core'
+import { ActionIcon, Box, Button, CloseButton, Flex, Group, Kbd, SimpleGrid, Switch, Text, TextInput, Title } from '@mantine/core'
 import { IconKeyboard, IconRestore } from '@tabler/icons-react'
 import { useState } from 'react'
 import { resetKeys, setKeys, showKeys, switchSingleKeys, useKeyMap } from '../../api/keyMap'
@@ -86,48 +86,50 @@ function KeyRow({ row, isChanged, onChange }: KeyRowProps) {
   const own = useKeyMap((s) => s.own)
   const chords = chordsOf(row.id, own)
   return (
-    <>
-      <Flex align="center" gap="xs" mih={26} data-key-of={row.id}>
-        <Flex component="dt" wrap="wrap" gap={3} w="8.2rem" flex="none">
-          {chords.map((chord) => (
-            <Kbd key={chordText(chord)} size="xs">
-              {chordText(chord)}
-            </Kbd>
-          ))}
-          {chords.length === 0 && (
-            <Text span size="xs" c="dimmed">
-              none
-            </Text>
+    <Flex align="start" gap="xs" mih={26} data-key-of={row.id}>
+      <Flex component="dt" wrap="wrap" gap={3} w="8.2rem" flex="none" pt={2}>
+        {chords.map((chord) => (
+          <Kbd key={chordText(chord)} size="xs">
+            {chordText(chord)}
+          </Kbd>
+        ))}
+        {chords.length === 0 && (
+          <Text span size="xs" c="dimmed">
+            none
+          </Text>
+        )}
+      </Flex>
+      <Box component="dd" m={0} flex={1}>
+        <Flex align="center" gap="xs">
+          <Text span inherit flex={1} {...(own[row.id] && { fw: 600 })}>
+            {row.words}
+          </Text>
+          {own[row.id] && (
+            <ActionIcon
+              variant="subtle"
+              color="gray"
+              size={24}
+              aria-label={`Reset: ${row.words}`}
+              title="Reset"
+              onClick={() => setKeys(row.id, undefined)}
+            >
+              <IconRestore size={15} aria-hidden />
+            </ActionIcon>
           )}
-        </Flex>
-        <Text component="dd" inherit m={0} flex={1} fw={own[row.id] ? 600 : undefined}>
-          {row.words}
-        </Text>
-        {own[row.id] && (
           <ActionIcon
             variant="subtle"
             color="gray"
             size={24}
-            aria-label={`Reset: ${row.words}`}
-            title="Reset"
-            onClick={() => setKeys(row.id, undefined)}
+            aria-expanded={isChanged}
+            aria-label={`Change the key: ${row.words}`}
+            title="Change the key"
+            onClick={() => onChange(isChanged ? undefined : row.id)}
           >
-            <IconRestore size={15} aria-hidden />
+            <IconKeyboard size={15} aria-hidden />
           </ActionIcon>
-        )}
-        <ActionIcon
-          variant="subtle"
-          color="gray"
-          size={24}
-          aria-expanded={isChanged}
-          aria-label={`Change the key: ${row.words}`}
-          title="Change the key"
-          onClick={() => onChange(isChanged ? undefined : row.id)}
-        >
-          <IconKeyboard size={15} aria-hidden />
-        </ActionIcon>
-      </Flex>
-      {isChanged && <KeyField row={row} onDone={() => onChange(undefined)} />}
-    </>
+        </Flex>
+        {isChanged && <KeyField row={row} onDone={() => onChange(undefined)} />}
+      </Box>
+    </Flex>
   )
 }

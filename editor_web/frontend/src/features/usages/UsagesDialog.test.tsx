@@ -18,7 +18,9 @@ function asked(used: Used, found: Usages['found'], unread: Usages['unread'] = []
   live()
   server()
     .on('GET /catalogue', { states: STATES, containers: [], behaviors: [], entries: [{ kind: 'joints', name: 'home' }], names: {} })
-    .on('GET /search/usages', ({ query }: { query: URLSearchParams }) => (query.get('name') === used.name ? { found, unread } : { found: [], unread: [] }))
+    .on('GET /search/usages', ({ query }: { query: URLSearchParams }) =>
+      query.get('name') === used.name ? { found, unread } : { found: [], unread: [] },
+    )
   return show(<UsagesDialog asked={used} onOpen={opened} />)
 }
 

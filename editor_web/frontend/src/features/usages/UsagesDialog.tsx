@@ -10,6 +10,7 @@ import { findUsages, usagesQuery } from '../../api/usages'
 import { Dialog } from '../../components/Dialog'
 import { TextButton } from '../../components/TextButton'
 import type { Used, UsedKind } from '../../document/editing/usedBy'
+import { nameOfPath } from '../../document/path'
 
 export interface UsagesDialogProps {
   readonly asked: Used
@@ -100,7 +101,6 @@ export function UsagesDialog({ asked, onOpen }: UsagesDialogProps) {
 }
 
 function Place({ usage, onOpen }: { usage: Usage; onOpen: () => void }) {
-  const file = usage.document.split('/').at(-1) ?? ''
   return (
     <Group component="li" gap="xs" wrap="nowrap" py={2}>
       <Text span inherit flex={1} miw={0} truncate>
@@ -110,7 +110,7 @@ function Place({ usage, onOpen }: { usage: Usage; onOpen: () => void }) {
         {usage.how}
       </Text>
       <Code fz="xs">
-        {file}:{usage.line}
+        {nameOfPath(usage.document)}:{usage.line}
       </Code>
     </Group>
   )
