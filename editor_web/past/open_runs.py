@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from editor_web.past.failure import RunFailure, failure_of
@@ -16,7 +16,7 @@ from engine.archive import Archive, ArchivedRun
 from engine.errors import FlexcellError
 from engine.event import Event
 from engine.project import Session
-from engine.runtime.history import UserdataHistory
+from engine.runtime.history import UserdataHistory, Watch
 
 MAX_OPEN_RUNS = 6
 """Maximum number of open runs; 100,000 events take about 100 MB."""
@@ -58,11 +58,12 @@ class OpenRun:
             position = position if time_s is None else states.seq_at(time_s)
             return None if position == known else states.at(position, lines=lines)
 
-    def values(self, *, seq: int | None) -> PastUserdata:
+    def values(self, *, seq: int | None, watches: Sequence[Watch] = ()) -> PastUserdata:
         """Return its userdata after an event; by default after the last event."""
         with self.lock:
             states = self.course.states
-            return self.userdata.at(states, states.last_seq if seq is None else min(seq, states.last_seq))
+            at = states.last_seq if seq is None else min(seq, states.last_seq)
+            return self.userdata.at(states, at, watches=watches)
 
     def failure(self, *, is_failed: bool) -> RunFailure | None:
         """Return its failure; None if it did not fail."""

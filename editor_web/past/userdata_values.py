@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 
 import msgspec
 
 from editor_web.past.state_history import RunStateHistory
-from editor_web.telemetry.page_subscriptions import userdata_scope
-from engine.runtime.history import ScopeView, UserdataHistory
+from editor_web.telemetry.page_subscriptions import userdata_scope, watch_values
+from engine.runtime.history import ScopeView, UserdataHistory, Watch, WatchValue
 
 _EVERY = 1024
 """Events between two checkpoints."""
 
 
 class PastUserdata(msgspec.Struct, frozen=True, kw_only=True):
-    """The scopes of a run after event `seq`, by container path; `problem` tells why there are none."""
+    """The scopes of a run after event `seq`, by container path, and the values of the watches, in their order.
+
+    `problem` tells why there are none.
+    """
 
     seq: int
     scopes: dict[str, ScopeView]
+    watches: tuple[WatchValue, ...] = ()
     problem: str = ""
 
 
@@ -32,7 +37,7 @@ class UserdataCheckpoints:
     def __init__(self, checkpoint: UserdataHistory | None) -> None:
         self._checkpoints = [checkpoint] if checkpoint is not None else []
 
-    def at(self, states: RunStateHistory, seq: int) -> PastUserdata:
+    def at(self, states: RunStateHistory, seq: int, *, watches: Sequence[Watch] = ()) -> PastUserdata:
         """Return the values after event `seq` of the run with this state history."""
         if not self._checkpoints:
             return PastUserdata(seq=seq, scopes={}, problem="the executed behavior is unknown")
@@ -43,4 +48,8 @@ class UserdataCheckpoints:
             if checkpoint.seq > self._checkpoints[-1].seq:
                 self._checkpoints.append(checkpoint.copy())
         checkpoint.read(states.events(checkpoint.seq + 1, seq))
-        return PastUserdata(seq=seq, scopes={path: userdata_scope(scope) for path, scope in checkpoint.scopes.items()})
+        return PastUserdata(
+            seq=seq,
+            scopes={path: userdata_scope(scope) for path, scope in checkpoint.scopes.items()},
+            watches=watch_values(watches, checkpoint),
+        )

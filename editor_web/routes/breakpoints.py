@@ -5,9 +5,10 @@ from __future__ import annotations
 from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.control_bodies import BreakpointsBody
+from editor_web.http_bodies.control_bodies import BreakpointsBody, ConditionBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
+from engine.check import ConditionCheck, check_condition
 from engine.errors import ExpressionError
 from engine.runtime.control import Breakpoint
 
@@ -37,3 +38,11 @@ async def keep_breakpoints(behavior_id: str, body: BreakpointsBody, services: Se
     """Replace the breakpoints stored with the behavior; an empty list removes the file."""
     services.backend.keep_breakpoints(behavior_id, await run_in_threadpool(to_breakpoints, body))
     return get_breakpoints(behavior_id, services)
+
+
+@router.post("/{behavior_id:path}/condition")
+def check_breakpoint_condition(behavior_id: str, body: ConditionBody, services: ServicesOf) -> ConditionCheck:
+    """Check a condition at a node of the saved behavior; nothing is kept."""
+    documents = services.documents
+    behavior = documents.library.behavior(behavior_id)
+    return check_condition(behavior, documents.catalogue, body.path, body.condition, after=body.when == "after")

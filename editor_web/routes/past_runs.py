@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from typing import Annotated
 
+import msgspec
 from fastapi import HTTPException, Query, Request, Response
 
 from editor_web.http_bodies.common_bodies import ErrorBody
@@ -18,7 +19,7 @@ from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.archive import ArchivedRun, RecordingFile
 from engine.errors import FlexcellError, RecordingError
-from engine.runtime.history import LOG_LINES
+from engine.runtime.history import LOG_LINES, MAX_WATCHES, Watch
 
 _PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
 
@@ -36,6 +37,8 @@ AfterSeq = Annotated[int, Query(ge=0, le=2**53)]
 Seq = Annotated[int | None, Query(ge=0, le=2**53)]
 Lines = Annotated[int, Query(ge=0, le=LOG_LINES)]
 Name = Annotated[str, Query(max_length=200)]
+Watches = Annotated[str, Query(max_length=20_000, description="A JSON list of watches")]
+_WATCHES = msgspec.json.Decoder(Annotated[tuple[Watch, ...], msgspec.Meta(max_length=MAX_WATCHES)])
 
 
 @router.get("/past-runs")
@@ -96,9 +99,9 @@ async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Re
 
 
 @router.get("/runs/{run_id}/userdata", responses=_found(PastUserdata))
-async def run_values(run_id: str, request: Request, seq: Seq = None) -> Response:
+async def run_values(run_id: str, request: Request, seq: Seq = None, watches: Watches = "") -> Response:
     """Return the userdata of a run after an event."""
-    return await _of_run(request, run_id, lambda opened: opened.values(seq=seq))
+    return await _of_run(request, run_id, _values(seq, watches))
 
 
 @router.get("/recordings")
@@ -130,9 +133,9 @@ async def recording_failure(path: str, request: Request) -> Response:
 
 
 @router.get("/recordings/{path:path}/userdata", responses=_found(PastUserdata))
-async def recording_values(path: str, request: Request, seq: Seq = None) -> Response:
+async def recording_values(path: str, request: Request, seq: Seq = None, watches: Watches = "") -> Response:
     """Return the userdata of a recorded run after an event."""
-    return await asyncio.to_thread(_of_recording, _open_runs(request), path, lambda opened: opened.values(seq=seq))
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, _values(seq, watches))
 
 
 @router.get("/recordings/{path:path}", responses=_PROBLEMS)
@@ -143,6 +146,14 @@ async def open_recording(path: str, request: Request) -> OpenRunBody:
 
 
 RunReader = Callable[[OpenRun], object]
+
+
+def _values(seq: int | None, written: str) -> RunReader:
+    try:
+        watches = _WATCHES.decode(written) if written else ()
+    except msgspec.MsgspecError as error:
+        raise HTTPException(422, f"`watches`: {error}") from error
+    return lambda opened: opened.values(seq=seq, watches=watches)
 
 
 def _timeline(from_s: float, until_s: float | None, after: int) -> RunReader:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
+from msgspec import Meta
 
 from engine.messages import Pose
 from engine.project import GoalInfo
-from engine.runtime.history import ScopeView
+from engine.runtime.history import MAX_WATCHES, ScopeView, Watch, WatchValue
 
 MAX_CURVES = 32
 
@@ -15,8 +18,8 @@ class DataSubscription(msgspec.Struct, frozen=True, kw_only=True, tag="look", ta
     """From the client: subscribe to exactly this data.
 
     `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates,
-    leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals
-    of a run, `cell` where the items of the cell are and what its tools hold.
+    leases and goals, `topic` the messages of one topic, `run` the userdata of a run with the values of `watches`,
+    `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold.
     """
 
     number: int = 0
@@ -24,6 +27,7 @@ class DataSubscription(msgspec.Struct, frozen=True, kw_only=True, tag="look", ta
     topic: str = ""
     fields: tuple[str, ...] = ()
     run: str = ""
+    watches: Annotated[tuple[Watch, ...], Meta(max_length=MAX_WATCHES)] = ()
     goals: str = ""
     cell: bool = False
 
@@ -83,12 +87,13 @@ class SamplesFrame(msgspec.Struct, frozen=True, kw_only=True, tag="samples", tag
 class UserdataFrame(msgspec.Struct, frozen=True, kw_only=True, tag="userdata", tag_field="k"):
     """The changed scopes, by the path of their container; null for a removed one.
 
-    `first` means that the frame contains all scopes.
+    `first` means that the frame contains all scopes. `watches` are the values of all watches, in their order.
     """
 
     run: str
     first: bool
     scopes: dict[str, ScopeView | None]
+    watches: tuple[WatchValue, ...] = ()
     problem: str = ""
 
 

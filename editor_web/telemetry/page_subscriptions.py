@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from msgspec.structs import replace
 
@@ -31,7 +31,7 @@ from editor_web.telemetry.plot_signals import Path, number_at, path_of
 from editor_web.telemetry.truncate import truncate_value
 from engine.errors import FlexcellError
 from engine.project import Session
-from engine.runtime.history import ScopeView, UserdataHistory
+from engine.runtime.history import ScopeView, UserdataHistory, Watch, WatchValue, evaluate_watch
 
 SAMPLE_S = 0.05
 MESSAGE_S = 0.2
@@ -168,7 +168,8 @@ class PageSubscriptions:
         if not changes and not first:
             return []
         scopes = {path: userdata_scope(scope) if scope is not None else None for path, scope in changes.items()}
-        return [UserdataFrame(run=run, first=first, scopes=scopes)]
+        watches = watch_values(self._look.watches, userdata)
+        return [UserdataFrame(run=run, first=first, scopes=scopes, watches=watches)]
 
     def _goals_of(self, run: str) -> list[DataFrame]:
         before, self._goals = self._goals, progress_by_node(self._inspector.goals(run))
@@ -182,6 +183,12 @@ class PageSubscriptions:
 def _curve(field: str) -> tuple[str, Path]:
     topic, _, path = field.rpartition(":")
     return topic, path_of(path)
+
+
+def watch_values(watches: Iterable[Watch], userdata: UserdataHistory) -> tuple[WatchValue, ...]:
+    """Return the values of watches for a page, large ones truncated."""
+    found = (evaluate_watch(each, userdata) for each in watches)
+    return tuple(replace(each, value=truncate_value(each.value, max_leaves=_VALUE_LEAVES)) for each in found)
 
 
 def userdata_scope(scope: ScopeView) -> ScopeView:

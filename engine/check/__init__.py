@@ -2,6 +2,7 @@
 
 from engine.check.arm_target_checks import check_targets
 from engine.check.behavior_check import check_behavior, check_file, check_given, check_survey, read_beside
+from engine.check.breakpoint_check import ConditionCheck, check_condition
 from engine.check.cell.cell_check import check_cell, check_entries_document
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.entry_checks import check_stored, names_by_kind
@@ -13,12 +14,14 @@ __all__ = [
     "CODES",
     "CellContext",
     "CellFit",
+    "ConditionCheck",
     "Finding",
     "Severity",
     "cell_context",
     "cell_fit",
     "check_behavior",
     "check_cell",
+    "check_condition",
     "check_entries_document",
     "check_file",
     "check_given",

@@ -3,6 +3,7 @@
 from engine.library.behavior_graph import GraphNode, GraphTransition
 from engine.library.behavior_library import BehaviorView, FindingView, Library, ParameterView
 from engine.library.name_search import NameHit, NameKind, behavior_names, search_names
+from engine.library.usages import Usage, Usages, UsedKind, find_usages
 
 __all__ = [
     "BehaviorView",
@@ -13,6 +14,10 @@ __all__ = [
     "NameHit",
     "NameKind",
     "ParameterView",
+    "Usage",
+    "Usages",
+    "UsedKind",
     "behavior_names",
+    "find_usages",
     "search_names",
 ]

@@ -12,6 +12,7 @@ from engine.check import CellFit, Finding, cell_fit, check_survey, invalid_docum
 from engine.document import Behavior, Cell, ParameterSpec, load_source, survey_behavior
 from engine.errors import ControlError, DocumentError, Position
 from engine.library.behavior_graph import GraphNode, new_graph
+from engine.library.usages import Usages, UsedKind, find_usages
 from engine.runtime.plan import Catalogue
 from engine.suggestions import did_you_mean
 
@@ -68,6 +69,8 @@ class _Read:
     stamps: Mapping[Path, int]
     view: BehaviorView
     behavior: Behavior | None
+    surveyed: Behavior | None = None
+    """What can be read of the document, also when it has mistakes and cannot be run."""
 
 
 class Library:
@@ -113,6 +116,11 @@ class Library:
         if read.behavior is None:
             raise DocumentError("this behavior cannot be read", where=behavior_id)
         return read.behavior
+
+    def usages(self, kind: UsedKind, name: str) -> Usages:
+        """Return where the behaviors of the project, as their files say, use something."""
+        behaviors = [(behavior_id, self._fresh(behavior_id).surveyed) for behavior_id in sorted(self._ids())]
+        return find_usages(behaviors, self.catalogue, kind, name)
 
     def require_fit(self, behavior_id: str) -> None:
         """Reject a behavior that is written for another cell and cannot be executed in the connected one.
@@ -178,10 +186,11 @@ class Library:
         findings = check_survey(survey, file, self.catalogue)
         behavior = survey.behavior
         if behavior is None or survey.mistakes or survey.circles:
-            return _Read(stamps=stamps, view=_unreadable(behavior_id, findings), behavior=None)
+            return _Read(stamps=stamps, view=_unreadable(behavior_id, findings), behavior=None, surveyed=behavior)
         others = [inner.file for inner in _all_references(behavior)]
         stamps |= {other: _stamp(other) for other in (*others, *read_beside(behavior))}
-        return _Read(stamps=stamps, view=self._view(behavior_id, behavior, findings), behavior=behavior)
+        view = self._view(behavior_id, behavior, findings)
+        return _Read(stamps=stamps, view=view, behavior=behavior, surveyed=behavior)
 
     def _view(self, behavior_id: str, behavior: Behavior, findings: tuple[Finding, ...]) -> BehaviorView:
         return BehaviorView(

@@ -11,14 +11,14 @@ import msgspec
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 
-NameKind = Literal["behavior", "node", "entry", "run", "item", "topic"]
+NameKind = Literal["behavior", "node", "state", "entry", "run", "item", "topic"]
 
 
 class NameHit(msgspec.Struct, frozen=True, kw_only=True):
     """Something that has a name.
 
-    `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run;
-    the address of an item of the cell, also for its topic `path`.
+    `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind
+    `path`; the id of a run; the address of an item of the cell, also for its topic `path`.
     """
 
     kind: NameKind

@@ -173,7 +173,7 @@ def test_stop_is_above_a_dialog_and_its_key_works_there(browser: Browser, shop: 
         expect(dialog).to_be_visible()
         stop_button(page).click()
         until(page, lambda: len(stops) == 1)
-        for _ in range(10):
+        for _ in range(200):
             page.keyboard.press("Tab")
             if page.evaluate("document.activeElement.ariaKeyShortcuts") == KEY:
                 break

@@ -4,7 +4,13 @@ Operator consoles call `Control`; the nodes of the run ask `Gate` whether they m
 """
 
 from engine.runtime.control.autonomy import LEVELS, AutonomyLevel
-from engine.runtime.control.breakpoint import Breakpoint, breakpoints_file, load_breakpoints, save_breakpoints
+from engine.runtime.control.breakpoint import (
+    Breakpoint,
+    GatePoint,
+    breakpoints_file,
+    load_breakpoints,
+    save_breakpoints,
+)
 from engine.runtime.control.control import Control, ControlView, LossPolicy
 from engine.runtime.control.gate import Gate, GateWait
 from engine.runtime.control.single_step import StepMode
@@ -16,6 +22,7 @@ __all__ = [
     "Control",
     "ControlView",
     "Gate",
+    "GatePoint",
     "GateWait",
     "LossPolicy",
     "StepMode",

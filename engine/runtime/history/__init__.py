@@ -7,6 +7,7 @@ from engine.lazy_face import lazy_face
 
 _HOMES = {
     "LOG_LINES": "engine.runtime.history.live_run",
+    "MAX_WATCHES": "engine.runtime.history.watch",
     "LiveRun": "engine.runtime.history.live_run",
     "LiveRunChange": "engine.runtime.history.live_run",
     "LogLine": "engine.runtime.history.event_log",
@@ -20,6 +21,9 @@ _HOMES = {
     "RunView": "engine.runtime.history.run_view",
     "ScopeView": "engine.runtime.history.userdata_history",
     "UserdataHistory": "engine.runtime.history.userdata_history",
+    "Watch": "engine.runtime.history.watch",
+    "WatchValue": "engine.runtime.history.watch",
+    "evaluate_watch": "engine.runtime.history.watch",
     "event_text": "engine.runtime.history.event_texts",
     "log_line": "engine.runtime.history.event_log",
 }

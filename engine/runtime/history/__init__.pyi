@@ -8,9 +8,11 @@ from engine.runtime.history.run_reducer import RunReducer
 from engine.runtime.history.run_state import NodeLive, NodeStep, RunState, RunStateChange
 from engine.runtime.history.run_view import RunView
 from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
+from engine.runtime.history.watch import MAX_WATCHES, Watch, WatchValue, evaluate_watch
 
 __all__ = [
     "LOG_LINES",
+    "MAX_WATCHES",
     "LiveRun",
     "LiveRunChange",
     "LogLine",
@@ -24,6 +26,9 @@ __all__ = [
     "RunView",
     "ScopeView",
     "UserdataHistory",
+    "Watch",
+    "WatchValue",
+    "evaluate_watch",
     "event_text",
     "log_line",
 ]

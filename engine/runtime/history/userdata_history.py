@@ -5,7 +5,7 @@ Unlike `ResumableState`, which restores a run, it applies a write at once and ke
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -22,7 +22,9 @@ from engine.event import (
     UserdataAppended,
     UserdataWritten,
 )
+from engine.node_path import is_inside
 from engine.runtime.history.run_state_part import RunStatePart
+from engine.runtime.nodes.behavior_reference import BehaviorReference
 from engine.runtime.nodes.foreach import ForEach
 from engine.runtime.plan import Plan
 from engine.runtime.userdata.append_only_lists import AppendOnlyLists
@@ -64,6 +66,7 @@ class UserdataHistory(RunStatePart):
         self._plan = plan
         self._changed: set[str] = set()
         self._items: dict[str, tuple[int, Sequence[object]]] = {}
+        self._parameters: dict[str, object] = {}
         self._lists = AppendOnlyLists()
         self._begin("", plan().userdata, 0.0)
 
@@ -77,11 +80,12 @@ class UserdataHistory(RunStatePart):
     def copy(self) -> UserdataHistory:
         """Return an independent copy."""
         copied = UserdataHistory(self._plan)
-        copied.seq, copied.scopes, copied._changed, copied._items = (
+        copied.seq, copied.scopes, copied._changed, copied._items, copied._parameters = (
             self.seq,
             dict(self.scopes),
             set(self._changed),
             dict(self._items),
+            self._parameters,
         )
         return copied
 
@@ -90,8 +94,30 @@ class UserdataHistory(RunStatePart):
         changed, self._changed = self._changed, set()
         return {path: self.scopes.get(path) for path in sorted(changed)}
 
+    def values_at(self, path: str) -> dict[str, object]:
+        """Return what a node reads by its names; inside a container also the container's own values.
+
+        Args:
+            path: The node; empty for all of the run, where the innermost container that is active counts.
+        """
+        declared = self._plan().parameters.items()
+        read = {name: each.normal(each.default) for name, each in declared if not each.required} | self._parameters
+        for container, scope in sorted(self._scopes_around(path), key=lambda each: (each[1].is_open, each[0])):
+            node = self._plan().nodes.get(container)
+            if path and node is not None and isinstance(node.work, BehaviorReference):
+                read = {}  # what is outside of a behavior that is referred to is not read in it
+            read |= {key: record.value for key, record in scope.values.items()}
+        return read
+
+    def _scopes_around(self, path: str) -> Iterator[tuple[str, ScopeView]]:
+        for key, scope in self.scopes.items():
+            container = key.partition("#")[0].removesuffix("*")
+            if not path or not container or is_inside(container, path):
+                yield container, scope
+
     def run_started(self, event: RunStarted) -> None:
-        """Take over the inputs."""
+        """Take over the parameters and inputs."""
+        self._parameters = event.parameters
         for key, value in event.inputs.items():
             self._put("", key, UserdataRecord(value=value, by="", at_s=event.time_s, writes=0))
 

@@ -12,8 +12,9 @@ from editor_web.past import state_history as subject
 from editor_web.past.state_history import RunStateHistory
 from editor_web.past.timeline import RunHistory
 from editor_web.past.userdata_values import UserdataCheckpoints
-from editor_web.telemetry.page_subscriptions import userdata_scope
+from editor_web.telemetry.page_subscriptions import userdata_scope, watch_values
 from engine.event import Event, MessageLogged
+from engine.runtime.history import Watch
 from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.userdata_history import UserdataHistory
 from tests.editor_web.past.events import STEPS, made_up
@@ -94,6 +95,9 @@ def test_an_event_that_comes_again_changes_nothing() -> None:
     assert [mark.kind for mark in timeline.marks] == ["goal"]
 
 
+COUNT = Watch(expression="count * 2")
+
+
 @settings(deadline=None, max_examples=20)
 @given(seqs=st.lists(st.integers(0, 2600), min_size=1, max_size=6))
 def test_the_values_of_every_moment_are_what_was_reported_live(seqs: list[int]) -> None:
@@ -106,8 +110,9 @@ def test_the_values_of_every_moment_are_what_was_reported_live(seqs: list[int]) 
     for seq in seqs:
         live = UserdataHistory(lambda: plan)
         live.read(event for event in events if event.seq <= seq)
-        found = books.at(moments, min(seq, moments.last_seq))
+        found = books.at(moments, min(seq, moments.last_seq), watches=[COUNT])
         assert found.scopes == {path: userdata_scope(scope) for path, scope in live.scopes.items()}
+        assert found.watches == watch_values([COUNT], live)
 
 
 def test_without_the_behavior_there_are_no_values() -> None:

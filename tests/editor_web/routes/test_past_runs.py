@@ -110,6 +110,9 @@ def test_after_a_restart_a_run_is_found_and_opened(http: httpx.Client, restarted
     assert end["nodes"]["root/one"]["status"] == "failed"
     values = got(http, f"/runs/{run}/userdata")
     assert (values["scopes"][""]["values"]["kept"]["value"], values["problem"]) == (7, "")
+    watched = got(http, f"/runs/{run}/userdata", watches='[{"expression": "kept > 6"}, {"expression": "kept +"}]')
+    assert [(each["value"], each["problem"] == "") for each in watched["watches"]] == [(True, True), (None, False)]
+    assert http.get(f"/runs/{run}/userdata", params={"watches": "[{"}).status_code == 422
     failure = got(http, f"/runs/{run}/failure")
     assert (failure["path"], failure["text"]) == ("root/one", "division by zero")
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from engine.bus import SkillBus
 from engine.clock import LoopClock
+from engine.editing import DocumentRepository
 from engine.messages import GripperState
 from engine.project import BusInspector
+from engine.registry import load_states
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import TRANSFER
@@ -36,3 +40,19 @@ async def test_items_of_the_cell_and_their_topics_are_found(serve: Serve) -> Non
     assert [(hit["kind"], hit["id"], hit["path"]) for hit in topic] == [
         ("topic", "robots/left/gripper", "left/gripper/state")
     ]
+
+
+async def test_states_are_found_and_where_behaviors_use_them(serve: Serve, tmp_path: Path) -> None:
+    (tmp_path / "behaviors").mkdir()
+    text = "flexcell: 1\nname: wait\noutcomes: [done]\nroot: {state: flow.Wait, with: {duration_s: 1}}\n"
+    (tmp_path / "behaviors" / "wait.yaml").write_text(text, encoding="utf-8")
+    async with serve(FakeBackend(documents=DocumentRepository(tmp_path, load_states()))) as served:
+        hit = (await served.http.get("/api/v1/search", params={"text": "flow.wait"})).json()[0]
+        asked = {"kind": "state", "name": hit["id"]}
+        usages = (await served.http.get("/api/v1/search/usages", params=asked)).json()
+        wrong = await served.http.get("/api/v1/search/usages", params={"kind": "color", "name": "red"})
+    assert (hit["kind"], hit["id"]) == ("state", "flow.Wait")
+    assert [(each["document"], each["path"], each["line"]) for each in usages["found"]] == [
+        ("behaviors/wait.yaml", "root", 4)
+    ]
+    assert wrong.status_code == 422

@@ -4,7 +4,7 @@ import { useState } from 'react'
 import { useLive } from './live'
 import { problemOf } from './queryClient'
 import { pastQueries, runSubject, useTimeline, type Subject } from './timeline'
-import type { PastUserdata } from './types'
+import type { PastUserdata, Watch } from './types'
 
 interface Moment {
   readonly subject: Subject
@@ -12,21 +12,25 @@ interface Moment {
 }
 
 /** Undefined while the present is shown; kept up with the cursor, one request at a time. */
-export function usePastValues(run: string | undefined, isShown: boolean): PastUserdata | undefined {
+export function usePastValues(run: string | undefined, isShown: boolean, watches: readonly Watch[]): PastUserdata | undefined {
   const seq = useLive((s) => s.past?.seq)
   const opened = useTimeline((s) => s.opened)
   const subject = opened ?? (run ? runSubject(run) : undefined)
   const [asked, ask] = useState<Moment>()
-  const query = pastQueries.userdata(asked?.subject ?? runSubject(''), asked?.seq ?? 0)
+  const query = pastQueries.userdata(asked?.subject ?? runSubject(''), asked?.seq ?? 0, watches)
   const { data, error, isFetching } = useQuery({ ...query, ...(!asked && { queryFn: skipToken }) })
   const isOther = asked?.seq !== seq || asked?.subject.address !== subject?.address
   if (isShown && !isFetching && isOther && seq !== undefined && subject) ask({ subject, seq })
-  const [latest, setLatest] = useState<Moment & { readonly values: PastUserdata }>()
+  const [latest, setLatest] = useState<Moment & { readonly values: PastUserdata; readonly watches: readonly Watch[] }>()
   const problem = problemOf(error)
-  const values = problem === undefined ? data : { seq: asked?.seq ?? 0, scopes: {}, problem }
-  if (asked && values && (latest?.subject !== asked.subject || latest.seq !== asked.seq || latest.values.problem !== values.problem))
-    setLatest({ ...asked, values })
+  const values = problem === undefined ? data : { seq: asked?.seq ?? 0, scopes: {}, watches: [], problem }
+  const isLatest =
+    latest?.subject === asked?.subject &&
+    latest?.seq === asked?.seq &&
+    latest?.watches === watches &&
+    latest.values.problem === values?.problem
+  if (asked && values && !isLatest) setLatest({ ...asked, values, watches })
   if (seq === undefined) return undefined
   // Of another time than the one that is shown, until that has come; never of another run.
-  return latest && latest.subject.address === subject?.address ? latest.values : { seq, scopes: {}, problem: '' }
+  return latest && latest.subject.address === subject?.address ? latest.values : { seq, scopes: {}, watches: [], problem: '' }
 }

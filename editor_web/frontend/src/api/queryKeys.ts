@@ -1,6 +1,6 @@
 /** The names under which the page keeps what the server has answered; a key is below the one that it begins with. */
 import type { PastQuery, Subject } from './timeline'
-import type { DemonstrationBody } from './types'
+import type { ConditionBody, DemonstrationBody, Watch } from './types'
 import type { TaughtReference } from './teaching'
 
 export const queryKeys = {
@@ -11,6 +11,9 @@ export const queryKeys = {
   cellConnection: ['cell connection'],
   cellItems: ['cell items'],
   names: (text: string) => ['names', text] as const,
+  catalogue: ['catalogue'],
+  usages: (kind: string, name: string) => ['usages', kind, name] as const,
+  condition: (behavior: string, body: ConditionBody) => ['condition', behavior, body] as const,
 
   pastRuns: ['past runs'],
   foundRuns: (query: PastQuery) => [...queryKeys.pastRuns, query] as const,
@@ -22,7 +25,7 @@ export const queryKeys = {
   failure: ({ address }: Subject) => ['failure', address] as const,
   timelinePart: ({ address }: Subject, fromS: number, untilS: number, seq: number) =>
     ['timeline part', address, fromS, untilS, seq] as const,
-  userdata: ({ address }: Subject, seq: number) => ['userdata', address, seq] as const,
+  userdata: ({ address }: Subject, seq: number, watches: readonly Watch[]) => ['userdata', address, seq, watches] as const,
   recordedFields: (addresses: readonly string[]) => ['recorded fields', addresses] as const,
   recordedCurves: (asked: object) => ['recorded curves', asked] as const,
 

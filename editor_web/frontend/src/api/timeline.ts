@@ -1,4 +1,5 @@
 /** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
+import type { Watch } from './types'
 import type { Dict } from '../document/dict'
 import { queryOptions } from '@tanstack/react-query'
 import { nextMoment } from '../document/timelineMoment'
@@ -47,7 +48,8 @@ export const pastApi = {
   openRecording: (path: string) => call<OpenRunBody>(`/recordings/${addressOf(path)}`),
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
-  userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),
+  userdata: (subject: Subject, seq: number, watches: readonly Watch[]) =>
+    call<PastUserdata>(`${subject.address}/userdata?${query({ seq, watches: watches.length > 0 ? JSON.stringify(watches) : '' })}`),
   failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
 }
 
@@ -64,8 +66,11 @@ export const pastQueries = {
       queryKey: queryKeys.timelinePart(subject, fromS, untilS, seq),
       queryFn: () => pastApi.timeline(subject, 0, fromS, untilS),
     }),
-  userdata: (subject: Subject, seq: number) =>
-    queryOptions({ queryKey: queryKeys.userdata(subject, seq), queryFn: () => pastApi.userdata(subject, seq) }),
+  userdata: (subject: Subject, seq: number, watches: readonly Watch[] = []) =>
+    queryOptions({
+      queryKey: queryKeys.userdata(subject, seq, watches),
+      queryFn: () => pastApi.userdata(subject, seq, watches),
+    }),
   failure: (subject: Subject) => queryOptions({ queryKey: queryKeys.failure(subject), queryFn: () => pastApi.failure(subject) }),
 }
 

@@ -460,6 +460,20 @@ export interface ConcurrencyCondition {
   readonly preempt: readonly string[]
 }
 
+/** The condition of a breakpoint at the node `path`, to be checked; an empty one only asks for the names. */
+export interface ConditionBody {
+  readonly path: string
+  readonly condition?: string
+  readonly when?: "after" | "before"
+}
+
+/** What is wrong with a condition; empty if nothing is. `names` are the keys and parameters that it may use. */
+export interface ConditionCheck {
+  readonly problem: string
+  readonly hint: string
+  readonly names: readonly string[]
+}
+
 /** What is different in one run of a sweep; the rest is what all its runs have in common. */
 export interface Configuration {
   readonly number: number
@@ -549,7 +563,7 @@ export interface DataDifference {
   readonly kind: "read" | "wrote"
 }
 
-/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold. */
+/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run with the values of `watches`, `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold. */
 export interface DataSubscription {
   readonly k: "look"
   readonly number?: number
@@ -557,6 +571,7 @@ export interface DataSubscription {
   readonly topic?: string
   readonly fields?: readonly string[]
   readonly run?: string
+  readonly watches?: readonly Watch[]
   readonly goals?: string
   readonly cell?: boolean
 }
@@ -1436,9 +1451,9 @@ export interface MoveResultBody {
   readonly left: readonly string[]
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
 export interface NameHit {
-  readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "topic"
+  readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "state" | "topic"
   readonly id: string
   readonly title: string
   readonly detail: string
@@ -1716,10 +1731,11 @@ export interface PastRunsBody {
   readonly counts: Dict<number>
 }
 
-/** The scopes of a run after event `seq`, by container path; `problem` tells why there are none. */
+/** The scopes of a run after event `seq`, by container path, and the values of the watches, in their order. `problem` tells why there are none. */
 export interface PastUserdata {
   readonly seq: number
   readonly scopes: Dict<ScopeView>
+  readonly watches: readonly WatchValue[]
   readonly problem: string
 }
 
@@ -2827,6 +2843,22 @@ export interface UngroupNode {
   readonly path: string
 }
 
+/** One place that uses it. `path` is the node in this document; empty for the document itself. `how` says in what way: `runs`, `reads pose`, `writes`. `line` and `column` count from 1. */
+export interface Usage {
+  readonly document: string
+  readonly behavior: string
+  readonly path: string
+  readonly how: string
+  readonly line: number
+  readonly column: number
+}
+
+/** All usages, by document and line; `unread` are the documents that cannot be read, and may have more. */
+export interface Usages {
+  readonly found: readonly Usage[]
+  readonly unread: readonly string[]
+}
+
 /** A node appended `value` to the list at `key` in the scope of the container `scope`. */
 export interface UserdataAppended {
   readonly event: "userdata_appended"
@@ -2838,12 +2870,13 @@ export interface UserdataAppended {
   readonly value: unknown
 }
 
-/** The changed scopes, by the path of their container; null for a removed one. `first` means that the frame contains all scopes. */
+/** The changed scopes, by the path of their container; null for a removed one. `first` means that the frame contains all scopes. `watches` are the values of all watches, in their order. */
 export interface UserdataFrame {
   readonly k: "userdata"
   readonly run: string
   readonly first: boolean
   readonly scopes: Dict<ScopeView | null>
+  readonly watches: readonly WatchValue[]
   readonly problem: string
 }
 
@@ -2905,10 +2938,22 @@ export interface Visit {
   readonly cause: string
 }
 
+/** An expression, with or without `${…}`, as the node at `path` would read it. Without a path the innermost active container that has a name counts. */
+export interface Watch {
+  readonly expression: string
+  readonly path?: string
+}
+
 /** From the client: watch this run (empty: the list of runs only); the response is a snapshot. */
 export interface WatchRun {
   readonly k: "watch"
   readonly run?: string
+}
+
+/** Its value; `problem` says why there is none. */
+export interface WatchValue {
+  readonly value: unknown
+  readonly problem: string
 }
 
 export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame

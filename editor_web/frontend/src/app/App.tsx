@@ -7,7 +7,9 @@ import { behaviorQueries } from '../api/behaviorQueries'
 import { connect, useLive, watch } from '../api/live'
 import { useAnswer, useOutdated } from '../api/queryClient'
 import { queryKeys } from '../api/queryKeys'
-import { openSearch, useSearch, type PageCommand } from '../api/search'
+import { showKeys, useKeyMap, useKeyOf } from '../api/keyMap'
+import { findUsages, useUsages } from '../api/usages'
+import { openSearch, type PageCommand } from '../api/search'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
@@ -20,7 +22,6 @@ import { nameOfPath } from '../document/path'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
-import { SearchBox } from '../features/search/SearchBox'
 import { useGuide } from '../features/stop/guide'
 import { StoppedBanner } from '../features/stop/StoppedBanner'
 import classes from './App.module.css'
@@ -42,8 +43,12 @@ import {
   type Route,
 } from './route'
 import { RoutedPage } from './RoutedPage'
+import { SearchPlace } from './SearchPlace'
+import { usePageKeys } from './usePageKeys'
 
 const StopGuide = lazyView(async () => (await import('./StopGuide')).StopGuide)
+const KeySheet = lazyView(async () => (await import('../features/keys/KeySheet')).KeySheet)
+const UsagesDialog = lazyView(async () => (await import('../features/usages/UsagesDialog')).UsagesDialog)
 const Tour = lazyView(async () => (await import('../features/tour/Tour')).Tour)
 
 export function App() {
@@ -58,14 +63,16 @@ export function App() {
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
   const isCell = route.page === 'cell'
-  const isSearching = useSearch((s) => s.isOpen)
   const isTouring = useTour((s) => s.isOn)
+  const used = useUsages((s) => s.asked)
+  const hasKeySheet = useKeyMap((s) => s.isShown)
+  const searchKey = useKeyOf('search').text
   const isStopped = useLive((s) => s.stop !== null)
   const isGuided = useGuide((s) => s.isOpen) && isStopped
   const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
   useEffect(connect, [])
-  useSearchKey()
+  usePageKeys()
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
   useEffect(() => {
     const name = behaviorId ? nameOfPath(behaviorId) : (session?.cell_name ?? '')
@@ -135,11 +142,7 @@ export function App() {
             component="button"
             type="button"
             leftSection={<IconSearch size={15} aria-hidden />}
-            label={
-              <>
-                Search <Kbd size="xs">Ctrl K</Kbd>
-              </>
-            }
+            label={<>Search {searchKey && <Kbd size="xs">{searchKey}</Kbd>}</>}
             onClick={openSearch}
           />
           {SIDE_PAGES.map(({ href, label, icon, pages }) => (
@@ -156,11 +159,11 @@ export function App() {
           <RoutedPage route={route} shown={shown} session={session} isNarrow={isNarrow ?? false} onOpen={open} />
         </Loading>
       </AppShell.Main>
-      {isSearching && (
-        <ViewBoundary name="Search">
-          <SearchBox pages={PAGES} edited={isEditing ? route.id : undefined} onOpen={(hit) => open(hrefOf(hit))} />
-        </ViewBoundary>
-      )}
+      <SearchPlace
+        pages={ANYWHERE}
+        edited={isEditing ? route.id : undefined}
+        onOpen={(hit) => (hit.kind === 'state' ? findUsages({ kind: 'state', name: hit.id }) : open(hrefOf(hit)))}
+      />
       <AppShell.Aside>
         {isGuided && (
           <ViewBoundary name="Recovery guide">
@@ -170,6 +173,20 @@ export function App() {
           </ViewBoundary>
         )}
       </AppShell.Aside>
+      {used && (
+        <ViewBoundary name="Usages">
+          <Suspense fallback={null}>
+            <UsagesDialog asked={used} onOpen={(document, path) => open(editHref(document, path))} />
+          </Suspense>
+        </ViewBoundary>
+      )}
+      {hasKeySheet && (
+        <ViewBoundary name="Keyboard">
+          <Suspense fallback={null}>
+            <KeySheet />
+          </Suspense>
+        </ViewBoundary>
+      )}
       {isTouring && (
         <ViewBoundary name="Tour">
           <Suspense fallback={null}>
@@ -200,9 +217,21 @@ const PAGES: readonly PageCommand[] = [
   ['Teach and jog', TEACH_HREF],
 ].map(([title = '', href = '']) => ({ id: `page:${href}`, title, group: 'Pages', run: () => goTo(href) }))
 
+const HELP: readonly PageCommand[] = [
+  {
+    id: 'help:usages',
+    title: 'Find usages: of a state, behavior, entry or userdata key',
+    group: 'Commands',
+    run: () => findUsages({ kind: 'state', name: '' }),
+  },
+  { id: 'help:keys', title: 'Keyboard: all keys, and change them', group: 'Commands', run: () => showKeys() },
+]
+const ANYWHERE = [...PAGES, ...HELP]
+
 function hrefOf({ kind, id, path }: NameHit): string {
   switch (kind) {
     case 'behavior':
+    case 'state':
       return behaviorHref(id)
     case 'node':
       return editHref(id, path)
@@ -214,20 +243,6 @@ function hrefOf({ kind, id, path }: NameHit): string {
     case 'topic':
       return cellHref(id, path)
   }
-}
-
-/** Ctrl+K, or Cmd+K, also while somebody writes. */
-function useSearchKey(): void {
-  useEffect(() => {
-    const onKeyDown = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.key.toLowerCase() !== 'k' || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey)
-        return
-      event.preventDefault()
-      openSearch()
-    }
-    addEventListener('keydown', onKeyDown)
-    return () => removeEventListener('keydown', onKeyDown)
-  }, [])
 }
 
 /** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */

@@ -1,15 +1,17 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
 import { Box, Button, Flex } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
-import { useEffect, useMemo, useState } from 'react'
+import { Suspense, useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
 import { clearRefusal, showRefusal } from '../api/refusal'
 import { hasCellView } from '../api/session'
+import { useStartHere } from '../api/startHere'
 import { runSubject } from '../api/timeline'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
+import { lazyView } from '../components/lazyView'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
@@ -20,7 +22,9 @@ import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
 import { ShowMenu } from '../features/cell/ShowMenu'
+import { Breakpoints } from '../features/control/Breakpoints'
 import { ChangeReport } from '../features/control/ChangeReport'
+import { goToCondition } from '../features/control/goToCondition'
 import { Holds } from '../features/control/Holds'
 import { FORCE_ID, NodeCard } from '../features/control/NodeCard'
 import { PathScrubber } from '../features/control/PathScrubber'
@@ -28,9 +32,8 @@ import { RefusalLine } from '../features/control/RefusalLine'
 import { REQUESTS_ID } from '../features/control/Requests'
 import { RunBar } from '../features/control/RunBar'
 import { StatusRow } from '../features/control/StatusRow'
-import { ShortcutSheet } from '../features/control/ShortcutSheet'
 import { useCommands, type Commands } from '../features/control/useCommands'
-import { useShortcuts } from '../features/control/useShortcuts'
+import { useRunKeys } from '../features/control/useRunKeys'
 import { FindingList } from '../features/findings/FindingList'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
@@ -42,13 +45,14 @@ import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
-import { StartHereDialog } from '../features/parameters/StartHereDialog'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useBehavior } from './useBehavior'
 import { useMomentAddress } from './useMomentAddress'
 import { NarrowGraph, SideTabs, TabBody, Wide, type Arrangement, type Tab } from './WorkSpace'
+
+const StartHereDialog = lazyView(async () => (await import('../features/parameters/StartHereDialog')).StartHereDialog)
 
 export interface BehaviorPageProps {
   readonly id: string
@@ -80,7 +84,6 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
   const [tab, setTab] = useState<Tab>(hasErrors(behavior) ? 'problems' : 'parameters')
-  const [isSheetOpen, setSheetOpen] = useState(false)
   const [askedTab, askTab] = useState<{ readonly tab: string }>()
   const hasView = hasCellView(session)
   const { layout, arrangement, setLayout } = useArrangement(hasView)
@@ -88,6 +91,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const obstacle = isConnected ? obstacleOf(behavior, active, session) : 'The server does not answer'
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
   const commands = useCommands(run, node?.path)
+  const isStartAsked = useStartHere((s) => s.asked !== undefined)
   const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
   const mayOperate = session?.role === 'operator'
   useGoalsOf(run && isActive(run) ? run.id : undefined)
@@ -114,15 +118,19 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     selected,
     show,
   )
-  const keys = useShortcuts({
+  useRunKeys({
     pause: commands.pauseOrResume,
     into: () => commands.step('into'),
     over: () => commands.step('over'),
     out: () => commands.step('out'),
     back: commands.stepBack,
     stop: commands.stop,
-    sheet: () => setSheetOpen(true),
     break: () => withNode('Breakpoint', 'breakpoint', (path) => void toggleBreakpoint(path)),
+    condition: () =>
+      withNode('Breakpoint', 'breakpoint', (path) => {
+        setTab('node')
+        void goToCondition(path)
+      }),
     lock: () =>
       withNode('Lock', 'lock', (path) => {
         const isLocked = useLive.getState().control?.locks.includes(path)
@@ -159,6 +167,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       onSelect={choose}
       shown={shown}
       behavior={behavior.id}
+      breakpointForm={(path) => <Breakpoints path={path} isOff={commands.obstacle('breakpoint')} />}
       breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
     />
   ) : (
@@ -266,7 +275,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
       </ViewBoundary>
       <ViewBoundary name="Run control">
-        <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} />
+        <RunBar run={run} commands={commands} hasKeys />
       </ViewBoundary>
       <ViewBoundary name="Status">
         <StatusRow run={run} root={behavior.graph} commands={commands} onShow={show} onFailure={showFailure} notices={<BlockedPaths />} />
@@ -312,8 +321,13 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         />
       )}
       <ChangeReport commands={commands} />
-      <StartHereDialog behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
-      <ShortcutSheet isOpen={isSheetOpen} onClose={() => setSheetOpen(false)} areOn={keys.areOn} onSwitch={keys.setOn} />
+      {isStartAsked && (
+        <ViewBoundary name="Start here">
+          <Suspense fallback={null}>
+            <StartHereDialog behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
+          </Suspense>
+        </ViewBoundary>
+      )}
     </Flex>
   )
 }

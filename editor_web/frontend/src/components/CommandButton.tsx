@@ -1,6 +1,8 @@
 /** A button that stays reachable while it cannot be used, and then says why. */
 import { Button, type ButtonProps } from '@mantine/core'
 import type { ReactNode } from 'react'
+import { useKeyOf } from '../api/keyMap'
+import type { CommandId } from '../document/commandTable'
 import classes from './CommandButton.module.css'
 
 export interface CommandButtonProps {
@@ -13,7 +15,8 @@ export interface CommandButtonProps {
   readonly onPress: () => void
   readonly icon?: ReactNode
   /** The key that does the same. */
-  readonly shortcut?: string | undefined
+  /** The command that it is; its key is said, as it is now. */
+  readonly command?: CommandId | undefined
   readonly isPressed?: boolean | undefined
   readonly tone?: 'plain' | 'strong' | 'quiet' | 'danger'
   /** Only the icon is shown where there is little room. */
@@ -28,9 +31,10 @@ const TONES: Readonly<Record<NonNullable<CommandButtonProps['tone']>, ButtonProp
 }
 
 export function CommandButton(props: CommandButtonProps) {
-  const { label, hint, obstacle, onObstacle, onPress, icon, shortcut, isPressed, tone = 'plain', isCompact = false } = props
+  const { label, hint, obstacle, onObstacle, onPress, icon, command, isPressed, tone = 'plain', isCompact = false } = props
   const isOff = obstacle !== undefined
-  const words = isOff ? `Not possible: ${obstacle}` : [hint, shortcut && `Key: ${shortcut}`].filter(Boolean).join('. ')
+  const key = useKeyOf(command)
+  const words = isOff ? `Not possible: ${obstacle}` : [hint, key.text && `Key: ${key.text}`].filter(Boolean).join('. ')
   return (
     <Button
       size="xs"
@@ -42,7 +46,8 @@ export function CommandButton(props: CommandButtonProps) {
       data-compact={isCompact || undefined}
       aria-disabled={isOff || undefined}
       {...(isPressed === undefined ? {} : { 'aria-pressed': isPressed })}
-      {...(shortcut ? { 'aria-keyshortcuts': shortcut } : {})}
+      {...(key.forReaders ? { 'aria-keyshortcuts': key.forReaders } : {})}
+      {...(command ? { 'data-command': command } : {})}
       title={words || undefined}
       onClick={() => (isOff ? onObstacle?.() : onPress())}
     >

@@ -36,6 +36,17 @@ export function shownScopes(scopes: Scopes, search: string): readonly ScopeShown
   return withLines.toSorted((a, b) => Number(b.isOpen) - Number(a.isOpen) || (a.path < b.path ? -1 : 1))
 }
 
+/** The names that an expression can use: parameters, and the keys of all scopes. */
+export function namesIn(scopes: Scopes, parameters: readonly { readonly name: string }[]): readonly string[] {
+  const keys = Object.values(scopes).flatMap((scope) => Object.keys(scope.values))
+  return [...new Set([...parameters.map((each) => each.name), ...keys])].toSorted()
+}
+
+/** The container of a scope: `root/loop` of `root/loop#3`, `root/both/left` of `root/both/left*`. */
+export function containerOf(path: string): string {
+  return path.split('#')[0]?.replace(/\*$/, '') ?? path
+}
+
 /** `Behavior`, `root/inner`, `root/loop, round 3`, `root/both/left, not merged yet`. */
 export function scopeName(path: string): string {
   if (path === '') return 'Behavior'

@@ -2,7 +2,7 @@
 import { expect, it } from 'vitest'
 import type { Box } from '../geometry'
 import { completed, openingAt } from './completion'
-import { chordText, isChord } from './keys'
+import { chordText, isChord } from '../chord'
 import { aligned, neighborOf } from './neighbors'
 import { nodeAtLine, stateNear, writingAt } from './textPositions'
 import { added, conditionsOf, consequenceOf, withChild, withCount, withPreempted } from './rules'

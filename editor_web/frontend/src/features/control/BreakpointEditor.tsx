@@ -1,7 +1,11 @@
-/** The breakpoints of one node: before its entry and after its outcome, each with condition and count. */
-import { Code, Group, NumberInput, Stack, Switch, Text, TextInput, UnstyledButton, VisuallyHidden } from '@mantine/core'
+/** The breakpoints of one node: before its entry and after its outcome, each with condition and count, on or off. */
+import { Code, Group, NumberInput, Stack, Switch, Text } from '@mantine/core'
+import { useDebouncedValue } from '@mantine/hooks'
 import { useEffect, useState } from 'react'
-import { editBreakpoints, toggleBreakpoint, useBreakpoints } from '../../api/breakpoints'
+import { editBreakpoints, toggleBreakpoint, useBreakpoints, useSavedBreakpoints } from '../../api/breakpoints'
+import { conditionQuery } from '../../api/conditions'
+import { useLastAnswer } from '../../api/queryClient'
+import { ExpressionInput } from '../../components/ExpressionInput'
 import { breakpointWords, matches, replaced, type CompleteBreakpoint } from '../../document/breakpoints'
 
 const PLACES = [
@@ -9,15 +13,25 @@ const PLACES = [
   { when: 'after', label: 'Pause after its outcome' },
 ] as const
 
-export function BreakpointEditor({ path, isOff }: { path: string; isOff: string | undefined }) {
+const DELAY_MS = 250
+
+export interface BreakpointEditorProps {
+  readonly path: string
+  /** Why nothing can be changed. */
+  readonly isOff: string | undefined
+  /** Where it stands: beside the graph, or at the node in it. */
+  readonly place?: 'node' | 'menu'
+}
+
+export function BreakpointEditor({ path, isOff, place = 'menu' }: BreakpointEditorProps) {
   const all = useBreakpoints()
   const wide = all.filter((each) => each.path !== path && matches(each.path, path))
   return (
-    <Stack gap="2xs" pt="3xs">
+    <Stack gap="2xs" pt="3xs" data-breakpoints={place}>
       {PLACES.map(({ when, label }) => {
         const set = all.find((each) => each.path === path && each.when === when)
         return (
-          <div key={when}>
+          <div key={when} data-when={when}>
             <Switch
               size="xs"
               label={label}
@@ -38,60 +52,62 @@ export function BreakpointEditor({ path, isOff }: { path: string; isOff: string 
   )
 }
 
-/** Condition and count; they count when the field is left, or with Enter. */
+/** Condition and count; they count when the field is left, or with Enter. A condition that the engine refuses is not kept. */
 function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }) {
-  const [condition, setCondition] = useState(point.if ?? '')
+  const [typed, setTyped] = useState(point.if ?? '')
   const [hits, setHits] = useState<number | string>(point.hits)
-  useEffect(() => {
-    setCondition(point.if ?? '')
-    setHits(point.hits)
-  }, [point.if, point.hits])
+  useEffect(() => setTyped(point.if ?? ''), [point.if])
+  useEffect(() => setHits(point.hits), [point.hits])
+  const behavior = useSavedBreakpoints((s) => s.behavior)
+  const [asked] = useDebouncedValue(typed.trim(), DELAY_MS)
+  const { value: check } = useLastAnswer({
+    ...conditionQuery(behavior, { path: point.path, condition: asked, when: point.when }),
+    enabled: !isOff,
+  })
 
-  function keep(): void {
-    const fresh = { ...point, if: condition.trim() || null, hits: Math.max(1, Number(hits) || 1) }
-    if (fresh.if === point.if && fresh.hits === point.hits) return
+  function keep(change: Partial<CompleteBreakpoint>): void {
+    // With what stands in the other field, of which the answer may be on its way.
+    const fresh = { ...point, if: typed.trim() || null, hits: Math.max(1, Number(hits) || 1), ...change }
+    if (fresh.if === point.if && fresh.hits === point.hits && fresh.enabled === point.enabled) return
     void editBreakpoints((list) => replaced(list, fresh))
   }
 
+  const keepHits = () => keep({})
   return (
-    <Group
-      component="form"
-      gap="2xs"
-      mt="4xs"
-      ml={36}
-      wrap="nowrap"
-      onSubmit={(event) => {
-        event.preventDefault()
-        keep()
-      }}
-    >
-      <TextInput
+    <Stack gap="3xs" mt="4xs" ml={36}>
+      <Group gap="2xs" wrap="nowrap" align="start">
+        <ExpressionInput
+          label="Only if"
+          placeholder="tries > 1"
+          value={point.if ?? ''}
+          names={check?.names ?? NO_NAMES}
+          problem={check?.problem ? [check.problem, check.hint].filter(Boolean).join('; ') : undefined}
+          isOff={isOff}
+          onType={setTyped}
+          onCommit={(text) => keep({ if: text || null })}
+        />
+        <NumberInput
+          size="xs"
+          label="From time"
+          min={1}
+          allowDecimal={false}
+          w={84}
+          value={hits}
+          disabled={isOff}
+          onChange={setHits}
+          onBlur={keepHits}
+          onKeyDown={(event) => event.key === 'Enter' && keepHits()}
+        />
+      </Group>
+      <Switch
         size="xs"
-        label="Only if"
-        placeholder="tries > 1"
-        flex={1}
-        styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}
-        value={condition}
+        label="Enabled"
+        checked={point.enabled}
         disabled={isOff}
-        onChange={(event) => setCondition(event.currentTarget.value)}
-        onBlur={keep}
+        onChange={(event) => keep({ enabled: event.currentTarget.checked })}
       />
-      <NumberInput
-        size="xs"
-        label="From time"
-        min={1}
-        allowDecimal={false}
-        w={84}
-        value={hits}
-        disabled={isOff}
-        onChange={setHits}
-        onBlur={keep}
-      />
-      <VisuallyHidden>
-        <UnstyledButton type="submit" tabIndex={-1}>
-          Keep
-        </UnstyledButton>
-      </VisuallyHidden>
-    </Group>
+    </Stack>
   )
 }
+
+const NO_NAMES: readonly string[] = []

@@ -1,11 +1,11 @@
 /** Everything that can hold the run: its breakpoints and locks, in one list. */
-import { Box, CloseButton, Group, Text } from '@mantine/core'
+import { Box, CloseButton, Group, Switch, Text } from '@mantine/core'
 import { IconBookmarkOff } from '@tabler/icons-react'
 import { editBreakpoints, useBreakpoints } from '../../api/breakpoints'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
 import { TextButton } from '../../components/TextButton'
-import { breakpointWords } from '../../document/breakpoints'
+import { breakpointWords, replaced } from '../../document/breakpoints'
 import { lookup } from '../../document/dict'
 import type { Commands } from './useCommands'
 
@@ -31,6 +31,8 @@ export function Holds({ commands, onShow }: { commands: Commands; onShow: (path:
           onShow={onShow}
           removal={`Remove the breakpoint ${each.when} ${each.path}`}
           onRemove={() => void editBreakpoints((list) => list.filter((one) => one.path !== each.path || one.when !== each.when))}
+          isOn={each.enabled}
+          onSwitch={(enabled) => void editBreakpoints((list) => replaced(list, { ...each, enabled }))}
         />
       ))}
       {locks?.map((path) => (
@@ -55,18 +57,38 @@ interface HoldProps {
   readonly onShow: (path: string) => void
   readonly removal: string
   readonly onRemove: () => void
+  /** Given for what can be switched off and stays in the list. */
+  readonly isOn?: boolean
+  readonly onSwitch?: (isOn: boolean) => void
 }
 
-function Hold({ path, words, color, onShow, removal, onRemove }: HoldProps) {
+function Hold({ path, words, color, onShow, removal, onRemove, isOn = true, onSwitch }: HoldProps) {
   return (
     <Group component="li" gap="2xs" py="4xs" fz="0.84rem" wrap="nowrap">
-      <Box w={10} h={10} flex="none" bdrs="xl" bg={color} style={{ forcedColorAdjust: 'none' }} aria-hidden />
+      <Box
+        w={10}
+        h={10}
+        flex="none"
+        bdrs="xl"
+        bg={isOn ? color : 'transparent'}
+        bd={`2px solid ${color}`}
+        style={{ forcedColorAdjust: 'none' }}
+        aria-hidden
+      />
       <Text span inherit flex={1} miw={0}>
         <TextButton onPress={() => onShow(path)}>{path}</TextButton>{' '}
         <Text span inherit c="var(--quiet)">
           {words}
         </Text>
       </Text>
+      {onSwitch && (
+        <Switch
+          size="xs"
+          aria-label={`Enabled: ${path}, ${words}`}
+          checked={isOn}
+          onChange={(event) => onSwitch(event.currentTarget.checked)}
+        />
+      )}
       <CloseButton size="sm" aria-label={removal} onClick={onRemove} />
     </Group>
   )

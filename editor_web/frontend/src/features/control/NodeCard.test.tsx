@@ -4,7 +4,7 @@ import { beforeEach, expect, it } from 'vitest'
 import { control, graphNode, live, node, run, server, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { loadSavedBreakpoints } from '../../api/breakpoints'
-import type { Breakpoint, BreakpointsBody } from '../../api/types'
+import type { Breakpoint, BreakpointsBody, ConditionBody, ConditionCheck } from '../../api/types'
 import { Holds } from './Holds'
 import { NodeCard } from './NodeCard'
 import { RefusalLine } from './RefusalLine'
@@ -32,6 +32,17 @@ function keeping(points: readonly Breakpoint[] = []): void {
   server()
     .on(`GET /breakpoints/${SHIFT}`, { breakpoints: points })
     .on(`PUT /breakpoints/${SHIFT}`, ({ body }: { body: BreakpointsBody }) => body)
+    .on(`POST /breakpoints/${SHIFT}/condition`, ({ body }: { body: ConditionBody }) => checked(body.condition ?? ''))
+}
+
+/** What the engine says of a condition. */
+function checked(condition: string): ConditionCheck {
+  const isWrong = condition.startsWith('trys')
+  return {
+    problem: isWrong ? '`trys` is not defined before `rest`' : '',
+    hint: isWrong ? 'did you mean tries?' : '',
+    names: ['part', 'tries', 'trial'],
+  }
 }
 
 beforeEach(async () => {
@@ -43,7 +54,7 @@ it('keeps a breakpoint that is switched on, lists it, and takes it away', async 
   live()
   const user = show(<Card isRunning={false} />)
   expect(screen.getByText('Nothing holds this behavior')).toBeVisible()
-  await user.click(screen.getByLabelText('Pause before its entry'))
+  await user.click(await screen.findByLabelText('Pause before its entry'))
   expect(await screen.findByRole('button', { name: 'Remove the breakpoint before root/rest' })).toBeVisible()
   expect(server().bodies(`PUT /breakpoints/${SHIFT}`)).toMatchObject([{ breakpoints: [{ path: 'root/rest', when: 'before' }] }])
   await user.click(screen.getByRole('button', { name: 'Remove the breakpoint before root/rest' }))
@@ -59,7 +70,7 @@ it('keeps condition and count of a breakpoint when Enter is pressed, in the run 
   const user = show(<Card />)
   await user.clear(screen.getByLabelText('From time'))
   await user.type(screen.getByLabelText('From time'), '3')
-  await user.type(screen.getByLabelText('Only if'), 'value == 1{Enter}')
+  await user.type(await screen.findByRole('combobox', { name: 'Only if' }), 'value == 1{Enter}')
   const wanted: Breakpoint = { path: 'root/rest', when: 'before', if: 'value == 1', hits: 3, outcomes: [], enabled: true, once: false }
   await waitFor(() => expect(server().bodies('POST /runs/r1/control/breakpoints').at(-1)).toEqual({ breakpoints: [wanted] }))
   expect(server().bodies(`PUT /breakpoints/${SHIFT}`).at(-1)).toEqual({ breakpoints: [wanted] })
@@ -71,7 +82,7 @@ it('says why a condition was refused', async () => {
   server().on(`PUT /breakpoints/${SHIFT}`, new Refusal(422, { message: 'it does not compile', hint: 'such as tries > 1' }))
   live()
   const user = show(<Card isRunning={false} />)
-  await user.type(screen.getByLabelText('Only if'), 'value >{Enter}')
+  await user.type(await screen.findByRole('combobox', { name: 'Only if' }), 'value >{Enter}')
   expect(await screen.findByRole('alert')).toHaveTextContent('Breakpoint was refused: it does not compile – such as tries > 1')
 })
 
@@ -81,6 +92,36 @@ it('tells a condition in the list of what holds', async () => {
   live()
   show(<Card isRunning={false} />)
   expect(screen.getByText('before, if value == 1')).toBeVisible()
+})
+
+it('offers the names that a condition can use, and says what the engine finds wrong with it', async () => {
+  keeping([POINT])
+  await loadSavedBreakpoints(SHIFT)
+  live()
+  const user = show(<Card isRunning={false} />)
+  const field = await screen.findByRole('combobox', { name: 'Only if' })
+  await user.clear(field)
+  await user.type(field, 'trys')
+  expect(await screen.findByText('`trys` is not defined before `rest`; did you mean tries?')).toBeVisible()
+  await user.clear(field)
+  await user.type(field, "part == 'cup' && tri")
+  await user.click(await screen.findByRole('option', { name: 'tries' }))
+  await user.type(field, ' > 1{Enter}')
+  expect(field).toHaveValue("part == 'cup' && tries > 1")
+  await waitFor(() => expect(screen.queryByText(/is not defined/)).toBeNull())
+  expect(server().bodies(`PUT /breakpoints/${SHIFT}`).at(-1)).toMatchObject({ breakpoints: [{ if: "part == 'cup' && tries > 1" }] })
+})
+
+it('switches a breakpoint off without losing it, beside the node and in the list', async () => {
+  keeping([POINT])
+  await loadSavedBreakpoints(SHIFT)
+  live()
+  const user = show(<Card isRunning={false} />)
+  await user.click(await screen.findByLabelText('Enabled'))
+  expect(await screen.findByText(/off$/)).toBeVisible()
+  expect(server().bodies(`PUT /breakpoints/${SHIFT}`).at(-1)).toMatchObject({ breakpoints: [{ path: 'root/rest', enabled: false }] })
+  await user.click(screen.getByLabelText(/^Enabled: root\/rest/))
+  await waitFor(() => expect(screen.getByLabelText('Enabled')).toBeChecked())
 })
 
 it('locks a node with a reason, tells it, and unlocks it', async () => {
@@ -117,7 +158,7 @@ it('lets a viewer set and remove no breakpoint', async () => {
   await loadSavedBreakpoints(SHIFT)
   live({}, 'viewer')
   const user = show(<Card isRunning={false} />)
-  expect(screen.getByLabelText('Pause before its entry')).toBeDisabled()
+  expect(await screen.findByLabelText('Pause before its entry')).toBeDisabled()
   await user.click(screen.getByRole('button', { name: 'Remove the breakpoint before root/rest' }))
   expect(screen.getByRole('alert')).toHaveTextContent('Breakpoint was refused: You may look only')
   expect(server().bodies(`PUT /breakpoints/${SHIFT}`)).toEqual([])

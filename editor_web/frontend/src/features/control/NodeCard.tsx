@@ -9,7 +9,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { GoalLine } from '../../components/GoalLine'
 import { waitingWords } from '../../document/commands'
 import { lookup } from '../../document/dict'
-import { BreakpointEditor } from './BreakpointEditor'
+import { Breakpoints } from './Breakpoints'
 import classes from './NodeCard.module.css'
 import type { Commands } from './useCommands'
 
@@ -50,7 +50,7 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
         />
       </Group>
       <Part name="Break" />
-      <BreakpointEditor key={node.path} path={node.path} isOff={commands.obstacle('breakpoint')} />
+      <Breakpoints key={node.path} place="node" path={node.path} isOff={commands.obstacle('breakpoint')} />
       <Part name="Lock" />
       <Lock key={`${node.path} lock`} path={node.path} commands={commands} />
       <Part name="Force" />
@@ -71,7 +71,7 @@ export function NodeCard({ node, behavior, commands }: { node: GraphNode; behavi
           label="Run again"
           hint="Its active children are preempted and clean up first"
           icon={<IconRepeat size={16} aria-hidden />}
-          shortcut="r"
+          command="repeat"
           obstacle={commands.obstacle('repeat')}
           onObstacle={() => commands.explain('repeat', 'Run again')}
           onPress={() => void commands.repeat(node.path)}
@@ -90,7 +90,7 @@ function Lock({ path, commands }: { path: string; commands: Commands }) {
   const isLocked = useLive((s) => s.control?.locks.includes(path) ?? false)
   const given = useLive((s) => lookup(s.lockReasons, path))
   const [reason, setReason] = useState('')
-  const common = { obstacle: commands.obstacle('lock'), onObstacle: () => commands.explain('lock', 'Lock'), shortcut: 'l' }
+  const common = { obstacle: commands.obstacle('lock'), onObstacle: () => commands.explain('lock', 'Lock'), command: 'lock' as const }
   if (isLocked) {
     return (
       <Group gap="3xs">

@@ -19,7 +19,7 @@ function Bar({ of }: { readonly of?: RunView }) {
   return (
     <>
       <RefusalLine />
-      <RunBar run={of} commands={commands} onSheet={() => undefined} />
+      <RunBar run={of} commands={commands} hasKeys />
       <StatusRow run={of} root={null} commands={commands} onShow={() => undefined} />
       <ChangeReport commands={commands} />
     </>

@@ -12,11 +12,13 @@ import {
   IconRefreshAlert,
   IconRefreshDot,
 } from '@tabler/icons-react'
+import { showKeys } from '../../api/keyMap'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
 import type { RunView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
+import type { RunCommandId } from '../../document/commandTable'
 import { LEVEL_WORDS, LEVELS, type Command } from '../../document/commands'
 import classes from './RunBar.module.css'
 import type { Commands } from './useCommands'
@@ -24,16 +26,16 @@ import type { Commands } from './useCommands'
 export interface RunBarProps {
   readonly run: RunView | undefined
   readonly commands: Commands
-  /** Show all keys; undefined where the keys of the page are not for this run. */
-  readonly onSheet?: () => void
+  /** Whether the keys of the page are for this run. */
+  readonly hasKeys?: boolean
   /** What it is the bar of, where there are several. */
   readonly of?: string
 }
 
-export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
+export function RunBar({ run, commands, hasKeys = false, of = '' }: RunBarProps) {
   const control = useLive((s) => s.control)
   const operated = useOperated()
-  const key = (letter: string) => (onSheet ? letter : undefined)
+  const key = (id: RunCommandId) => (hasKeys ? id : undefined)
   const named = (label: string) => (of ? `${label} of ${of}` : label)
   const isHeld = control?.paused === true && !control.stepping
   const isMine = operated === run?.id
@@ -50,7 +52,7 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           {...bar(isHeld ? 'resume' : 'pause', isHeld ? 'Resume' : 'Pause')}
           hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
           icon={isHeld ? <IconPlayerPlay size={16} aria-hidden /> : <IconPlayerPause size={16} aria-hidden />}
-          shortcut={key('p')}
+          command={key('pause')}
           tone={isHeld ? 'strong' : 'plain'}
           isCompact={false}
           onPress={commands.pauseOrResume}
@@ -59,28 +61,28 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           {...bar('step', 'Step into')}
           hint="Go on to the entry of the next node"
           icon={<IconArrowBarDown size={16} aria-hidden />}
-          shortcut={key('i')}
+          command={key('into')}
           onPress={() => commands.step('into')}
         />
         <CommandButton
           {...bar('step', 'Step over')}
           hint="Go on past everything inside this node"
           icon={<IconArrowRampRight size={16} aria-hidden />}
-          shortcut={key('o')}
+          command={key('over')}
           onPress={() => commands.step('over')}
         />
         <CommandButton
           {...bar('step', 'Step out')}
           hint="Go on until the container around it has its outcome"
           icon={<IconArrowBarUp size={16} aria-hidden />}
-          shortcut={key('u')}
+          command={key('out')}
           onPress={() => commands.step('out')}
         />
         <CommandButton
           {...bar('back', 'Step back')}
           hint="Undo the last started node, and return to before its entry"
           icon={<IconArrowBackUp size={16} aria-hidden />}
-          shortcut={key('z')}
+          command={key('back')}
           onPress={commands.stepBack}
         />
         <Box w={4} visibleFrom="xs" />
@@ -114,15 +116,15 @@ export function RunBar({ run, commands, onSheet, of = '' }: RunBarProps) {
           icon={<IconRefreshAlert size={16} aria-hidden />}
           onPress={() => commands.change(true)}
         />
-        {onSheet && (
+        {hasKeys && (
           <CommandButton
             label="Keys"
-            hint="All keyboard shortcuts"
+            hint="All keys, and changing them"
             icon={<IconKeyboard size={16} aria-hidden />}
-            shortcut="?"
+            command="sheet"
             tone="quiet"
             isCompact
-            onPress={onSheet}
+            onPress={() => showKeys()}
           />
         )}
       </Group>

@@ -2,10 +2,12 @@
 import { screen, within } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { live, run, server, show } from '../../../testing/page'
-import type { ScopeView, UserdataRecord } from '../../api/types'
+import type { ScopeView, UserdataRecord, WatchValue } from '../../api/types'
+import { watchValueOf } from '../../api/watches'
 import { Data } from './Data'
 
 const RUN = run()
+const SHIFT = { id: 'behaviors/shift.yaml', parameters: [] }
 const chosen = vi.fn()
 
 function value(of: unknown, by = '', writes = 0): UserdataRecord {
@@ -18,13 +20,12 @@ const SCOPES: Record<string, ScopeView> = {
 }
 
 /** The data of a run, as the server tells of it. */
-function told(scopes = SCOPES, problem = '') {
+function told(scopes = SCOPES, problem = '', watches: readonly WatchValue[] = []) {
   live({ run: 'r1', runs: [RUN] })
-  const user = show(<Data run={RUN} onShow={chosen} />)
+  const user = show(<Data run={RUN} behavior={SHIFT} onShow={chosen} />)
   const socket = server().socket('/data')
   socket.accept()
-  expect(socket.sent).toEqual([{ k: 'look', run: 'r1' }])
-  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes, problem })
+  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes, watches, problem })
   return { user, socket }
 }
 
@@ -36,8 +37,50 @@ function line(name: string): HTMLElement {
   return found
 }
 
+function watches(): HTMLElement {
+  return screen.getByRole('region', { name: 'Watches' })
+}
+
+it('asks for the run alone while nothing is watched', () => {
+  expect(told().socket.sent).toEqual([{ k: 'look', run: 'r1' }])
+})
+
+it('watches an expression that is typed, with names offered, and shows its value', async () => {
+  const { user, socket } = told()
+  await user.type(screen.getByRole('combobox', { name: 'New watch' }), 'size(fou')
+  await user.click(await screen.findByRole('option', { name: 'found' }))
+  await user.type(screen.getByRole('combobox', { name: 'New watch' }), '){Enter}')
+  expect(socket.sent.at(-1)).toEqual({ k: 'look', run: 'r1', watches: [{ expression: 'size(found)' }] })
+  expect(screen.getByRole('combobox', { name: 'New watch' })).toHaveValue('')
+  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes: SCOPES, watches: [{ value: 2, problem: '' }], problem: '' })
+  expect(within(watches()).getByRole('listitem')).toHaveTextContent('size(found)2')
+  expect(localStorage.getItem('flexcell.watches')).toContain('size(found)')
+})
+
+it('edits a watch in place, keeps it with Escape, and says why it has no value', async () => {
+  watchValueOf(SHIFT.id, { expression: 'count', path: 'root/look' })
+  const { user, socket } = told(SCOPES, '', [{ value: null, problem: '`count` is not defined here' }])
+  expect(watches()).toHaveTextContent('`count` is not defined here')
+  expect(watches()).toHaveTextContent('at look')
+  await user.click(screen.getByRole('button', { name: 'Edit the watch count' }))
+  await user.keyboard(' + 1{Escape}')
+  expect(screen.getByRole('button', { name: 'Edit the watch count' })).toBeVisible()
+  await user.click(screen.getByRole('button', { name: 'Edit the watch count' }))
+  await user.keyboard(' + 1{Enter}')
+  expect(socket.sent.at(-1)).toEqual({ k: 'look', run: 'r1', watches: [{ expression: 'count + 1', path: 'root/look' }] })
+  await user.click(screen.getByRole('button', { name: 'Remove the watch count + 1' }))
+  expect(socket.sent.at(-1)).toEqual({ k: 'look', run: 'r1' })
+})
+
+it('watches a value of the list where it stands', async () => {
+  const { user, socket } = told()
+  await user.click(screen.getByRole('button', { name: 'Watch local' }))
+  await user.click(screen.getByRole('button', { name: 'Watch local' }))
+  expect(socket.sent.at(-1)).toEqual({ k: 'look', run: 'r1', watches: [{ expression: 'local', path: 'root/look' }] })
+})
+
 it('says that no run is shown', () => {
-  show(<Data run={undefined} onShow={chosen} />)
+  show(<Data run={undefined} behavior={SHIFT} onShow={chosen} />)
   expect(screen.getByText('No run is shown')).toBeVisible()
 })
 
@@ -69,7 +112,7 @@ it('lights what is written, and tells how often it was', () => {
   const { socket } = told()
   expect(line('found').querySelector('[data-written]')).toBeNull()
   const values = { ...SCOPES['']?.values, found: { ...value(['cup'], 'root/look', 2), at_s: 0.5 } }
-  socket.tell({ k: 'userdata', run: 'r1', first: false, scopes: { '': { is_open: true, since_s: 0, values } }, problem: '' })
+  socket.tell({ k: 'userdata', run: 'r1', first: false, scopes: { '': { is_open: true, since_s: 0, values } }, watches: [], problem: '' })
   expect(line('found').querySelector('[data-written]')).toHaveTextContent('[cup]')
   expect(line('found')).toHaveTextContent('root/look at 0.50 s, ×2')
   expect(screen.getByRole('region', { name: 'root/look' })).toBeVisible()
@@ -77,13 +120,13 @@ it('lights what is written, and tells how often it was', () => {
 
 it('takes away a scope that is gone', () => {
   const { socket } = told()
-  socket.tell({ k: 'userdata', run: 'r1', first: false, scopes: { 'root/look': null }, problem: '' })
+  socket.tell({ k: 'userdata', run: 'r1', first: false, scopes: { 'root/look': null }, watches: [], problem: '' })
   expect(screen.queryByRole('region', { name: 'root/look' })).toBeNull()
 })
 
 it('says why there is nothing to show', () => {
   const { socket } = told({}, '')
   expect(screen.getByText('This behavior shares no data')).toBeVisible()
-  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes: {}, problem: 'the run is not in memory any more' })
+  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes: {}, watches: [], problem: 'the run is not in memory any more' })
   expect(screen.getByText('the run is not in memory any more')).toBeVisible()
 })

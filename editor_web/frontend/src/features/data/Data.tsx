@@ -1,6 +1,6 @@
 /** The userdata of the shown run: every value of every container, who wrote it last and when. */
-import { Anchor, Badge, Box, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
-import { IconDatabase, IconSearch } from '@tabler/icons-react'
+import { ActionIcon, Anchor, Badge, Box, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
+import { IconDatabase, IconEye, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
 import { useData } from '../../api/data'
 import { usePastValues } from '../../api/pastValues'
@@ -8,33 +8,48 @@ import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
 import { ValueTree } from '../../components/ValueTree'
-import { shownScopes, withChanges, type Scopes } from '../../document/userdata'
+import { containerOf, namesIn, shownScopes, withChanges, type Scopes } from '../../document/userdata'
 import { inShort, isShort } from '../../document/values'
-import type { UserdataRecord } from '../../api/types'
+import type { BehaviorView, UserdataRecord, WatchValue } from '../../api/types'
+import { useWatches, watchValueOf } from '../../api/watches'
 import classes from './data.module.css'
+import { Watches } from './Watches'
+
+const NO_VALUES: readonly WatchValue[] = []
 
 interface DataProps {
   readonly run: { readonly id: string } | undefined
+  readonly behavior: Pick<BehaviorView, 'id' | 'parameters'>
+  /** The selected node, if any. */
+  readonly node?: string | undefined
   readonly onShow: (path: string) => void
 }
 
-export function Data({ run, onShow }: DataProps) {
+export function Data({ run, behavior, node, onShow }: DataProps) {
   const area = useRef<HTMLDivElement>(null)
   const isShown = useIsVisible(area)
   const [search, setSearch] = useState('')
-  const [latest, setLatest] = useState<{ readonly run: string; readonly scopes: Scopes; readonly problem: string }>()
+  const [latest, setLatest] = useState<{
+    readonly run: string
+    readonly scopes: Scopes
+    readonly watches: readonly WatchValue[]
+    readonly problem: string
+  }>()
 
-  const past = usePastValues(run?.id, isShown)
+  const watches = useWatches(behavior.id)
+  const past = usePastValues(run?.id, isShown, watches)
 
-  useData(isShown && run && !past ? { run: run.id } : undefined, (frame) => {
+  useData(isShown && run && !past ? { run: run.id, ...(watches.length > 0 && { watches }) } : undefined, (frame) => {
     if (frame.k !== 'userdata') return
     setLatest((before) => ({
       run: frame.run,
       scopes: withChanges(before?.run === frame.run ? before.scopes : {}, frame.scopes, frame.first),
+      watches: frame.watches,
       problem: frame.problem,
     }))
   })
   const current = past ?? (latest?.run === run?.id ? latest : undefined)
+  const names = useMemo(() => namesIn(current?.scopes ?? {}, behavior.parameters), [current, behavior.parameters])
   const scopes = useMemo(() => shownScopes(current?.scopes ?? {}, search), [current, search])
 
   const tools = (
@@ -65,7 +80,7 @@ export function Data({ run, onShow }: DataProps) {
         </NoData>
       )
     return (
-      <Box className="pane" fz="0.8rem" tabIndex={0} role="region" aria-label="Userdata">
+      <>
         {scopes.map((scope) => (
           <section key={scope.path} aria-label={scope.name}>
             <Title
@@ -90,19 +105,28 @@ export function Data({ run, onShow }: DataProps) {
             </Title>
             <List listStyleType="none" fz="inherit">
               {scope.lines.map((line) => (
-                <Line key={line.key} name={line.key} line={line} onShow={onShow} />
+                <Line
+                  key={line.key}
+                  name={line.key}
+                  line={line}
+                  onShow={onShow}
+                  onWatch={() => watchValueOf(behavior.id, { expression: line.key, ...(scope.path && { path: containerOf(scope.path) }) })}
+                />
               ))}
             </List>
           </section>
         ))}
-      </Box>
+      </>
     )
   }
 
   return (
     <Panel title="Data" tools={tools}>
       <Box pos="absolute" inset={0} className={classes.data} ref={area}>
-        {body()}
+        <Box className="pane" fz="0.8rem" tabIndex={0} role="region" aria-label="Userdata">
+          {run && <Watches behavior={behavior.id} values={current?.watches ?? NO_VALUES} names={names} node={node} />}
+          {body()}
+        </Box>
       </Box>
     </Panel>
   )
@@ -120,16 +144,22 @@ interface LineProps {
   readonly name: string
   readonly line: UserdataRecord
   readonly onShow: (path: string) => void
+  readonly onWatch: () => void
 }
 
 /** Drawn again when it is written again, and lit for a moment then. */
 const Line = memo(
-  function Line({ name, line, onShow }: LineProps) {
+  function Line({ name, line, onShow, onWatch }: LineProps) {
     return (
       <li className={classes.line}>
-        <Text span inherit ff="monospace" fw={600}>
-          {name}
-        </Text>
+        <Group gap={4} wrap="nowrap" align="start" justify="space-between">
+          <Text span inherit ff="monospace" fw={600}>
+            {name}
+          </Text>
+          <ActionIcon variant="subtle" color="gray" size={18} aria-label={`Watch ${name}`} title="Watch it" onClick={onWatch}>
+            <IconEye size={13} aria-hidden />
+          </ActionIcon>
+        </Group>
         <span className={classes.value} key={line.writes} data-written={line.writes > 0 || undefined}>
           {isShort(line.value) ? (
             <Text span inherit ff="monospace">

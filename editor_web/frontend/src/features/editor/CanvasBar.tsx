@@ -50,31 +50,31 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
         </Text>
       )}
       <Space flex={1} />
-      <Tool label="Add a state or container (A)" onPress={() => openAddPalette()}>
+      <Tool label="Add a state or container" command="add" onPress={() => openAddPalette()}>
         <IconSquarePlus size={17} />
       </Tool>
       <Tool label="Drag a box to choose" isPressed={boxSelects} onPress={onBoxSelects}>
         <IconSelect size={17} />
       </Tool>
-      <Tool label="Data flow: writers and readers of each key (D)" isPressed={hasFlow} onPress={toggleDataFlow}>
+      <Tool label="Data flow: writers and readers of each key" command="data-flow" isPressed={hasFlow} onPress={toggleDataFlow}>
         <IconRoute2 size={17} />
       </Tool>
       <Tool label="Notes on the canvas" isPressed={hasNotes} onPress={toggleNotes}>
         <IconNote size={17} />
       </Tool>
-      <Tool label="Auto-layout (L)" onPress={() => void layOutAnew()}>
+      <Tool label="Auto-layout" command="layout" onPress={() => void layOutAnew()}>
         <IconHierarchy3 size={17} />
       </Tool>
       <Tool label="Overview" isPressed={hasMap} onPress={onMap}>
         <IconMap size={17} />
       </Tool>
-      <Tool label="Zoom out (-)" onPress={() => trackViewportMotion(zoomOut({ duration: 120 }))}>
+      <Tool label="Zoom out" command="zoom-out" onPress={() => trackViewportMotion(zoomOut({ duration: 120 }))}>
         <IconMinus size={17} />
       </Tool>
-      <Tool label="Zoom in (+)" onPress={() => trackViewportMotion(zoomIn({ duration: 120 }))}>
+      <Tool label="Zoom in" command="zoom-in" onPress={() => trackViewportMotion(zoomIn({ duration: 120 }))}>
         <IconPlus size={17} />
       </Tool>
-      <Tool label="Show all (F)" onPress={() => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 }))}>
+      <Tool label="Show all" command="fit" onPress={() => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 }))}>
         <IconArrowsMaximize size={17} />
       </Tool>
     </Group>

@@ -3,6 +3,9 @@ import { Box, CloseButton, Flex, Text, Title, UnstyledButton } from '@mantine/co
 import { IconAlertTriangleFilled, IconCircleXFilled, IconPencil, IconEye } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
 import type { KeyFlow, KeyReader, KeyWriter } from '../../api/types'
+import { findUsages } from '../../api/usages'
+import { watchValueOf } from '../../api/watches'
+import { TextButton } from '../../components/TextButton'
 import { kindOfKey, soundnessOf } from '../../document/editing/dataFlow'
 import { nameOfPath, pathsTo } from '../../document/path'
 import { goToUse, inputLabel, outputLabel, showKey, toggleDataFlow, useDataFlow, useFreshDataFlow } from './dataFlow'
@@ -10,7 +13,7 @@ import { FormWords } from './FormParts'
 import classes from './frame.module.css'
 import { PlainList } from './PlainList'
 import rows from './row.module.css'
-import { draftOf, rootOf, useEditor } from './store'
+import { draftOf, editor, rootOf, useEditor } from './store'
 
 export function DataFlowPanel() {
   const { flows, problem, key, of } = useDataFlow()
@@ -140,6 +143,10 @@ function Uses({ flow }: { flow: KeyFlow }) {
           </li>
         ))}
       </PlainList>
+      <Text size="xs" mt={4}>
+        <TextButton onPress={() => findUsages({ kind: 'key', name: flow.key })}>Find it in all documents</TextButton>,{' '}
+        <TextButton onPress={() => watchValueOf(editor().id, { expression: flow.key })}>watch it in runs</TextButton>
+      </Text>
     </Box>
   )
 }

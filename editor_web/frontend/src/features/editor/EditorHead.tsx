@@ -1,4 +1,5 @@
 /** The head of the editor: which behavior, whether it is saved, and what can be done with all of it. */
+import { showKeys } from '../../api/keyMap'
 import { openSearch } from '../../api/search'
 import { Badge, Box, Button, Flex, Group, Text, Title } from '@mantine/core'
 import {
@@ -62,7 +63,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           isCompact
           label="Undo"
-          shortcut="Control+Z"
+          command="undo"
           hint={back && `Undo: ${back}`}
           obstacle={back === undefined ? 'nothing was changed' : undefined}
           icon={<IconArrowBackUp size={16} aria-hidden />}
@@ -72,7 +73,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           isCompact
           label="Redo"
-          shortcut="Control+Shift+Z"
+          command="redo"
           hint={forth && `Redo: ${forth}`}
           obstacle={forth === undefined ? 'nothing was undone' : undefined}
           icon={<IconArrowForwardUp size={16} aria-hidden />}
@@ -84,7 +85,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           isCompact
           label="Text"
-          shortcut="Y"
+          command="text"
           hint="The document as text, beside the canvas"
           isPressed={isTextShown}
           icon={<IconCode size={16} aria-hidden />}
@@ -93,7 +94,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           isCompact
           label="Commands"
-          shortcut="Control+K"
+          command="search"
           hint="Every command, and every node to go to"
           icon={<IconCommand size={16} aria-hidden />}
           onPress={openSearch}
@@ -101,15 +102,15 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         <CommandButton
           isCompact
           label="Keys"
-          shortcut="?"
+          command="sheet"
           icon={<IconKeyboard size={16} aria-hidden />}
-          onPress={() => setEditor({ isSheetShown: true })}
+          onPress={() => showKeys()}
           tone="quiet"
         />
         <FileMenu mayEdit={mayEdit} />
         <CommandButton
           label="Save"
-          shortcut="Control+S"
+          command="save"
           obstacle={noSave}
           icon={<IconDeviceFloppy size={16} aria-hidden />}
           onPress={() => void save()}
@@ -117,7 +118,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
         />
         <CommandButton
           label="Run"
-          shortcut="Control+Enter"
+          command="run"
           hint="Saves, checks, and opens the run page"
           obstacle={noSave}
           icon={<IconPlayerPlayFilled size={14} aria-hidden />}

@@ -23,7 +23,6 @@ import { EditorHead } from './EditorHead'
 import { FileDialogs } from './FileDialogs'
 import { useFileDialog } from './fileDialogs'
 import { Inspector } from './Inspector'
-import { KeySheet } from './KeySheet'
 import { storeDraftNow } from './draftStorage'
 import { LibraryPanel } from './LibraryPanel'
 import { NoticeLine } from './NoticeLine'
@@ -224,7 +223,6 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       <ConflictDialog />
       <FileDialogs onGone={onGone} />
       <Suspense>{hasVersions && <VersionsDialog />}</Suspense>
-      <KeySheet />
     </Flex>
   )
 }

@@ -4,6 +4,8 @@ import { useState } from 'react'
 import { entryQueries } from '../../api/entries'
 import { useLive } from '../../api/live'
 import { useAnswer } from '../../api/queryClient'
+import { findUsages } from '../../api/usages'
+import { TextButton } from '../../components/TextButton'
 import { entryLines } from '../../document/editing/entryText'
 import { wallTime } from '../../document/time'
 import { FormWords } from './FormParts'
@@ -39,6 +41,7 @@ function Inside({ kind, name }: { kind: string; name: string }) {
       <FormWords>{changed.filter(Boolean).join(', ')}</FormWords>
       {row.tags.length > 0 && <FormWords>{row.tags.join(', ')}</FormWords>}
       {row.reason && <FormWords>{row.reason}</FormWords>}
+      <TextButton onPress={() => findUsages({ kind: 'entry', name })}>Find usages</TextButton>
       <Box component="dl" m={0}>
         {lines.map((line) => (
           <Flex key={line.label} justify="space-between" gap="xs">

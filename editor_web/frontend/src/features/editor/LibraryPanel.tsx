@@ -3,9 +3,12 @@ import { ActionIcon, Box, CloseButton, Flex, Stack, Text, TextInput, UnstyledBut
 import { IconChevronDown, IconChevronRight, IconInfoCircle, IconMapPin, IconSearch } from '@tabler/icons-react'
 import { useMemo, useState, type ReactNode } from 'react'
 import type { CatalogueBody } from '../../api/types'
+import { findUsages } from '../../api/usages'
 import { Panel } from '../../components/Panel'
+import { TextButton } from '../../components/TextButton'
 import { PLACED } from '../../document/editing/preview'
 import { found } from '../../document/editing/search'
+import type { Used } from '../../document/editing/usedBy'
 import { add, type Addition } from './actions'
 import { entryAddition, itemIcon, itemsOf, type Item } from './additions'
 import { placeForNew } from './paletteRequests'
@@ -113,6 +116,7 @@ function LibraryGroup({ title, items, isSearching, explained, onExplain }: Group
 }
 
 function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained: boolean; onExplain: () => void }) {
+  const used = usedIn(item)
   const short = item.title.startsWith(`${item.group}.`) ? item.title.slice(item.group.length + 1) : item.title
   return (
     <li>
@@ -153,10 +157,16 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
             <div key={index}>{paragraph}</div>
           ))}
           {item.outcomes.length > 0 && <FormWords>Outcomes: {item.outcomes.join(', ')}</FormWords>}
+          {used && <TextButton onPress={() => findUsages(used)}>Find usages</TextButton>}
         </Stack>
       )}
     </li>
   )
+}
+
+function usedIn({ id, kind, entry }: Item): Used | undefined {
+  if (entry) return { kind: 'entry', name: entry.name }
+  return kind === 'state' || (kind === 'behavior' && id.startsWith('behavior:')) ? { kind, name: id.slice(kind.length + 1) } : undefined
 }
 
 /** Into the selected container, or after the selected node. */

@@ -1,8 +1,9 @@
 /** The menu of the selected nodes, where the pointer asked for it. */
 import { Box, Kbd, Menu } from '@mantine/core'
 import { Fragment } from 'react'
-import { chordText } from '../../document/editing/keys'
+import { useKeyOf } from '../../api/keyMap'
 import { isFrame, nodeOf, ROOT } from '../../document/editing/model'
+import { usedBy } from '../../document/editing/usedBy'
 import type { Command } from './command'
 import { COMMANDS, disabledReason } from './commands'
 import { chosenOf, editor, rootOf, setEditor, useEditor } from './store'
@@ -12,7 +13,7 @@ const ONE = [
   ['run-from', 'run-to'],
   ['disable', 'rename', 'note'],
   ['duplicate', 'copy', 'cut', 'remove'],
-  ['alike'],
+  ['alike', 'usages'],
 ] as const
 const SEVERAL = [
   ['disable'],
@@ -47,13 +48,13 @@ export function NodeMenu() {
 }
 
 function Item({ command }: { command: Command }) {
-  const chord = command.chords[0]
+  const key = useKeyOf(command.id).text
   const obstacle = disabledReason(command)
   return (
     <Menu.Item
       disabled={obstacle !== undefined}
       title={obstacle}
-      rightSection={chord && <Kbd size="xs">{chordText(chord)}</Kbd>}
+      rightSection={key && <Kbd size="xs">{key}</Kbd>}
       onClick={() => {
         setEditor({ menu: undefined })
         command.run()
@@ -69,7 +70,7 @@ function shownCommand(id: string): Command | undefined {
   const node = chosenOf(editor())
   if (!node || (node.path === ROOT && ['disable', 'rename', 'remove', 'run-from', 'run-to'].includes(id))) return undefined
   if ((id === 'enter' || id === 'open') && !isFrame(node) && node.document === null) return undefined
-  if (id === 'alike' && !node.title) return undefined
+  if ((id === 'alike' && !node.title) || (id === 'usages' && !usedBy(node))) return undefined
   return COMMANDS.find((command) => command.id === id)
 }
 
@@ -81,6 +82,7 @@ const WORDS: Readonly<Record<string, string>> = {
   initial: 'Begin with it',
   note: 'Note',
   alike: 'Select all that run the same',
+  usages: 'Find usages of what it runs',
 }
 
 /** What it does to what is selected. */

@@ -62,14 +62,14 @@ export function SelectionBar() {
       <Bar>
         {selection.length === 1 ? <One node={node} /> : <Several count={selection.length} />}
         {node.path !== ROOT && (
-          <Tool label={`${node.disabled === false ? 'Disable' : 'Enable'} (X)`} onPress={() => void toggleDisabled()}>
+          <Tool label={node.disabled === false ? 'Disable' : 'Enable'} command="disable" onPress={() => void toggleDisabled()}>
             <IconPlayerTrackNext size={16} />
           </Tool>
         )}
-        <Tool label="Duplicate (Ctrl+D)" onPress={() => void duplicate()}>
+        <Tool label="Duplicate" command="duplicate" onPress={() => void duplicate()}>
           <IconCopyPlus size={16} />
         </Tool>
-        <Tool label="Delete (Del)" onPress={() => void remove()}>
+        <Tool label="Delete" command="remove" onPress={() => void remove()}>
           <IconTrash size={16} />
         </Tool>
       </Bar>
@@ -92,36 +92,36 @@ function One({ node }: { node: EditNode }) {
   const reference = node.document
   return (
     <>
-      <Tool label="Add a state or container here (A)" onPress={() => openAddPalette()}>
+      <Tool label="Add a state or container here" command="add" onPress={() => openAddPalette()}>
         <IconPlus size={16} />
       </Tool>
-      <Tool label="Connect (C)" onPress={openConnectPalette}>
+      <Tool label="Connect" command="connect" onPress={openConnectPalette}>
         <IconPlugConnected size={16} />
       </Tool>
       {reference !== null && (
         <>
-          <Tool label={isOpen ? 'Close it (O)' : 'Show the contents here (O)'} onPress={() => void toggleReference(node.path)}>
+          <Tool label={isOpen ? 'Close it' : 'Show the contents here'} command="open" onPress={() => void toggleReference(node.path)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
           </Tool>
-          <Tool label={`Open ${nameOfPath(reference)} in its own page (Enter)`} onPress={() => openReferred(reference, node.path)}>
+          <Tool label={`Open ${nameOfPath(reference)} in its own page`} command="enter" onPress={() => openReferred(reference, node.path)}>
             <IconExternalLink size={16} />
           </Tool>
         </>
       )}
       {reference === null && (isFrame(node) || (isTreePart(node.kind) && node.children.length > 0)) && (
         <>
-          <Tool label={isOpen ? 'Close it (O)' : 'Open it in place (O)'} onPress={() => toggleOpen(node.path, isOpen)}>
+          <Tool label={isOpen ? 'Close it' : 'Open it in place'} command="open" onPress={() => toggleOpen(node.path, isOpen)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
           </Tool>
-          <Tool label="Go into it (Enter)" onPress={() => enter(node.path)}>
+          <Tool label="Go into it" command="enter" onPress={() => enter(node.path)}>
             <IconLogin2 size={16} />
           </Tool>
         </>
       )}
-      <Tool label="Note (N)" onPress={() => writeNote(node.path)}>
+      <Tool label="Note" command="note" onPress={() => writeNote(node.path)}>
         <IconNote size={16} />
       </Tool>
-      <Tool label="Rename (F2)" onPress={() => setEditor({ renaming: node.path })}>
+      <Tool label="Rename" command="rename" onPress={() => setEditor({ renaming: node.path })}>
         <IconCursorText size={16} />
       </Tool>
     </>
@@ -134,7 +134,7 @@ function Several({ count }: { count: number }) {
       <Text span size="xs" fw={600} px="xs" style={{ whiteSpace: 'nowrap' }}>
         {count} chosen
       </Text>
-      <Tool label="Group into a machine (Ctrl+G)" onPress={() => void group('machine')}>
+      <Tool label="Group into a machine" command="group" onPress={() => void group('machine')}>
         <IconBoxMultiple size={16} />
       </Tool>
     </>

@@ -1,12 +1,10 @@
-/** A command of the editor: its words, its keys, and what it needs. */
-import type { Chord } from '../../document/editing/keys'
+/** A command of the editor: its row in the table of commands, what it needs, and what it does. */
+import type { CommandRow, EditorCommandId } from '../../document/commandTable'
 
-export interface Command {
-  readonly id: string
-  readonly words: string
-  readonly part: 'Document' | 'Build' | 'Arrange' | 'Move around'
-  readonly chords: readonly Chord[]
+export interface Action {
   /** What is needed for it; nothing stands in the way without. */
   readonly needs?: 'node' | 'nodes' | 'undo' | 'redo' | 'changes'
   readonly run: () => void
 }
+
+export type Command = Action & Pick<CommandRow, 'words' | 'part'> & { readonly id: EditorCommandId }

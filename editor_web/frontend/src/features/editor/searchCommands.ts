@@ -1,6 +1,6 @@
 /** What the editor offers to the search of the page: its commands, and the nodes of the document as it is now. */
+import { keyOf } from '../../api/keyMap'
 import type { PageCommand } from '../../api/search'
-import { chordText } from '../../document/editing/keys'
 import { allNodes } from '../../document/editing/model'
 import { parentPath } from '../../document/path'
 import { COMMANDS, disabledReason } from './commands'
@@ -9,11 +9,11 @@ import { editor, rootOf } from './store'
 
 export function searchCommands(): readonly PageCommand[] {
   const root = rootOf(editor())
-  const commands = COMMANDS.filter((command) => command.id !== 'palette').map((command): PageCommand => ({
+  const commands = COMMANDS.map((command): PageCommand => ({
     id: `command:${command.id}`,
     title: command.words,
     group: 'Commands',
-    hint: command.chords[0] && chordText(command.chords[0]),
+    hint: keyOf(command.id),
     obstacle: disabledReason(command),
     // The search closes first: what is opened keeps the keyboard.
     run: () => setTimeout(() => command.run()),

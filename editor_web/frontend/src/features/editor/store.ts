@@ -72,7 +72,6 @@ export interface EditorState {
   /** Where on the screen the menu of the selected nodes is open. */
   readonly menu: Point | undefined
   readonly isTextShown: boolean
-  readonly isSheetShown: boolean
   readonly renaming: string | undefined
   readonly tab: SideTab
   /** A node to bring into view; a new object asks anew. */
@@ -121,7 +120,6 @@ export function blank(id: string): EditorState {
     palette: undefined,
     menu: undefined,
     isTextShown: false,
-    isSheetShown: false,
     renaming: undefined,
     tab: 'node',
     shown: undefined,

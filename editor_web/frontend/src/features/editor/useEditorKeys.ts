@@ -2,6 +2,7 @@
 import { outcomeOf } from '../../document/edgeId'
 import { useEffect, type RefObject } from 'react'
 import { neighborOf, type Heading } from '../../document/editing/neighbors'
+import { isWriting } from '../../components/isWriting'
 import type { Box } from '../../document/geometry'
 import { parentPath } from '../../document/path'
 import { choose, focusNode } from './actions'
@@ -10,7 +11,7 @@ import { editor, showEditorRefusal } from './store'
 
 const ARROWS: ReadonlySet<string> = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])
 /** What holds also while somebody writes in a field. */
-const EVERYWHERE: ReadonlySet<string> = new Set(['save', 'run', 'palette', 'problem'])
+const EVERYWHERE: ReadonlySet<string> = new Set(['save', 'run', 'problem'])
 /** What a text field does by itself while nothing of the canvas is meant. */
 const IN_TEXT: ReadonlySet<string> = new Set(['undo', 'redo'])
 
@@ -61,11 +62,6 @@ function isPlain(event: KeyboardEvent): boolean {
 
 function isOnCanvas(target: HTMLElement | undefined): boolean {
   return !target || target === document.body || target.closest('[data-canvas]') !== null || target.tagName === 'MAIN'
-}
-
-function isWriting(target: HTMLElement): boolean {
-  const isField = target instanceof HTMLInputElement && !['range', 'checkbox', 'radio', 'button'].includes(target.type)
-  return isField || target.isContentEditable || target.matches('textarea, select, [role="textbox"], [role="combobox"]')
 }
 
 /** Choose the node that lies in a direction; true when there was one. */

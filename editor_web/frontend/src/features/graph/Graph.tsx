@@ -49,6 +49,8 @@ export interface GraphProps {
   readonly breadcrumb: ReactNode
   /** The behavior whose runs are started from here; the graph has no menus without. */
   readonly behavior?: string
+  /** What the menu of a node shows for its breakpoints. */
+  readonly breakpointForm?: (path: string) => ReactNode
   /** Whose graph it is, where there are several. */
   readonly of?: string
 }
@@ -66,7 +68,7 @@ export function Graph(props: GraphProps) {
   )
 }
 
-function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: GraphProps) {
+function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpointForm, of }: GraphProps) {
   const { ref, width, height } = useElementSize()
   const [flow, setFlow] = useState<Flow>('AUTO')
   const [follows, setFollows] = useState(false)
@@ -106,6 +108,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
               shown={shown}
               follows={follows}
               {...(behavior === undefined ? {} : { behavior })}
+              {...(breakpointForm && { breakpointForm })}
             />
           </FoldContext>
         )}
@@ -130,7 +133,7 @@ function followOptions(active: string) {
   return { nodes: active.split('\n').map((id) => ({ id })), padding: 0.35, maxZoom: 1, duration: 300 }
 }
 
-function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: DrawnProps) {
+function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior, breakpointForm }: DrawnProps) {
   const [menu, setMenu] = useState<{ readonly node: GraphNode; readonly at: Point }>()
   const { fitView } = useReactFlow()
   const active = useLive((s) => (follows ? activeLeaves(laidOut.root, s.nodes) : ''))
@@ -167,7 +170,15 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior }: 
 
   return (
     <LowDetailContext value={isFar}>
-      {behavior !== undefined && menu && <GraphMenu behavior={behavior} node={menu.node} at={menu.at} onClose={() => setMenu(undefined)} />}
+      {behavior !== undefined && menu && (
+        <GraphMenu
+          behavior={behavior}
+          node={menu.node}
+          breakpointForm={breakpointForm?.(menu.node.path)}
+          at={menu.at}
+          onClose={() => setMenu(undefined)}
+        />
+      )}
       <ReactFlow
         nodes={nodes}
         edges={isFar ? NO_EDGES : edges}

@@ -1,6 +1,6 @@
 /** Leads to anything by its name, and runs the commands of the page that is shown, from the keyboard. */
 import { useDebouncedValue } from '@mantine/hooks'
-import { IconBinaryTree2, IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin, IconRoute } from '@tabler/icons-react'
+import { IconBinaryTree2, IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin, IconPuzzle, IconRoute } from '@tabler/icons-react'
 import { useMemo, useState, type ReactNode } from 'react'
 import { useLastAnswer } from '../../api/queryClient'
 import { closeSearch, namesQuery, pageCommands, type PageCommand } from '../../api/search'
@@ -21,6 +21,7 @@ const SIZE = 15
 const KINDS: Readonly<Record<NameHit['kind'], { readonly group: string; readonly icon: ReactNode }>> = {
   behavior: { group: 'Behaviors', icon: <IconRoute size={SIZE} aria-hidden /> },
   node: { group: 'States and containers', icon: <IconBinaryTree2 size={SIZE} aria-hidden /> },
+  state: { group: 'States of the library: find usages', icon: <IconPuzzle size={SIZE} aria-hidden /> },
   entry: { group: 'Entries', icon: <IconMapPin size={SIZE} aria-hidden /> },
   item: { group: 'Items of the cell', icon: <IconCube size={SIZE} aria-hidden /> },
   topic: { group: 'Topics', icon: <IconBroadcast size={SIZE} aria-hidden /> },

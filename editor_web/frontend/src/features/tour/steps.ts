@@ -94,7 +94,7 @@ export const STEPS: readonly Step[] = [
     words: 'Run saves the behavior, checks it, and opens the page on which it runs.',
     keys: 'Press Ctrl and Enter.',
     page: 'edit',
-    targets: ['[data-editor-head] [aria-keyshortcuts="Control+Enter"]'],
+    targets: ['[data-editor-head] [data-command="run"]'],
     isDone: ({ page }) => page === 'behavior' || page === 'run',
   },
   {

@@ -1,0 +1,17 @@
+/** The breakpoints of a node; the form of them is loaded when a node is looked at. */
+import { Suspense } from 'react'
+import { lazyView } from '../../components/lazyView'
+import { ViewBoundary } from '../../components/ViewBoundary'
+import type { BreakpointEditorProps } from './BreakpointEditor'
+
+const Editor = lazyView(async () => (await import('./BreakpointEditor')).BreakpointEditor)
+
+export function Breakpoints(props: BreakpointEditorProps) {
+  return (
+    <ViewBoundary name="Breakpoints" of={props.path}>
+      <Suspense fallback={null}>
+        <Editor {...props} />
+      </Suspense>
+    </ViewBoundary>
+  )
+}
