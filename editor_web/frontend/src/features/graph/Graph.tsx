@@ -22,13 +22,14 @@ import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
 import { pointOf } from '../../components/menuPoint'
 import type { Point } from '../../document/geometry'
+import type { Direction } from '../../document/branching'
 import classes from './graph.module.css'
 import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
 import { ContainerNode, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useFolding, type Folding } from './useFolding'
-import { useLayout, type Flow, type LaidOut } from './useLayout'
+import { useLayout, type LaidOut } from './useLayout'
 
 const NODE_TYPES = { leaf: withLowDetail(LeafNode), container: withLowDetail(ContainerNode), outcome: withLowDetail(OutcomeNodeShell) }
 const EDGE_TYPES = { course: CourseLine }
@@ -68,13 +69,13 @@ export function Graph(props: GraphProps) {
 
 function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: GraphProps) {
   const { ref, width, height } = useElementSize()
-  const [flow, setFlow] = useState<Flow>('AUTO')
+  const [flow, setFlow] = useState<Direction>('RIGHT')
   const [follows, setFollows] = useState(false)
   const pane = width > 0 && height > 0 ? { width, height } : undefined
   const fold = useFolding(root, shown)
-  const { laidOut, problem } = useLayout(fold.drawn, root, flow, pane)
+  const { laidOut, problem } = useLayout(fold.drawn, root, flow)
   const detail = useStore((s) => detailAt(s.transform[2]))
-  const turned = laidOut?.direction === 'RIGHT' ? 'DOWN' : 'RIGHT'
+  const turned = flow === 'RIGHT' ? 'DOWN' : 'RIGHT'
   return (
     <Panel
       title="Graph"
@@ -96,7 +97,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, of }: G
             <span>Drawing…</span>
           </Group>
         )}
-        {laidOut && (
+        {laidOut && pane && (
           <FoldContext value={fold.toggle}>
             <Drawn
               laidOut={laidOut}
