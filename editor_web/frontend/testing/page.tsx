@@ -145,7 +145,18 @@ export function control(told: Partial<ControlView> = {}): ControlView {
 }
 
 export function node(told: Partial<NodeLive> = {}): NodeLive {
-  return { status: 'active', visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', last_transition: '', plan: null, ...told }
+  return {
+    status: 'active',
+    visits: 1,
+    outcome: '',
+    entered_s: 0,
+    duration_s: 0,
+    cause: '',
+    last_transition: '',
+    taken: {},
+    plan: null,
+    ...told,
+  }
 }
 
 export function robot(told: Partial<RobotLive> = {}): RobotLive {

@@ -149,7 +149,8 @@ class RunReducer(RunStatePart):
                 for inner, node in state.nodes.items()
                 if inner.startswith(inside) and node.status != "idle"
             }
-        self._nodes[path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
+        taken = state.node(path).taken
+        self._nodes[path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s, taken=taken)
         self._step = NodeStep(kind="entered", path=path)
         state.active.pop(path, None)
         state.active[path] = None
@@ -187,7 +188,7 @@ class RunReducer(RunStatePart):
         """Pass over the node with an outcome."""
         path = event.path
         node = self.state.node(path)
-        self._nodes[path] = NodeLive(status="skipped", visits=node.visits, outcome=event.outcome)
+        self._nodes[path] = NodeLive(status="skipped", visits=node.visits, outcome=event.outcome, taken=node.taken)
         self._await_container(path, event.outcome)
         self._step = NodeStep(kind="skipped", path=path, name=event.outcome, before=node)
 
@@ -212,6 +213,9 @@ class RunReducer(RunStatePart):
         node = self.state.node(event.path)
         self._nodes[event.path] = msgspec.structs.replace(node, last_transition=f"{event.source}|{event.outcome}")
         child = f"{event.path}/{event.source}"
+        left = self.state.node(child)
+        taken = {**left.taken, event.outcome: left.taken.get(event.outcome, 0) + 1}
+        self._nodes[child] = msgspec.structs.replace(left, taken=taken)
         self._proceed_from(child)
         self._step = NodeStep(kind="transition", path=child, name=event.outcome)
 

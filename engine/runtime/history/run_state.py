@@ -26,7 +26,8 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
     `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock;
     `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as
-    `source|outcome`. `plan` is the last path that this visit planned.
+    `source|outcome`. `taken` counts how often its machine has followed each outcome of this node, since the machine
+    was entered; an undone node counts anew. `plan` is the last path that this visit planned.
     """
 
     status: str = "idle"
@@ -36,6 +37,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     duration_s: float = 0.0
     cause: str = ""
     last_transition: str = ""
+    taken: Mapping[str, int] = {}
     plan: PlanLive | None = None
 
 

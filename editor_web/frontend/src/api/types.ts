@@ -1544,7 +1544,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `taken` counts how often its machine has followed each outcome of this node, since the machine was entered; an undone node counts anew. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1553,6 +1553,7 @@ export interface NodeLive {
   readonly duration_s: number
   readonly cause: string
   readonly last_transition: string
+  readonly taken: Dict<number>
   readonly plan: PlanLive | null
 }
 

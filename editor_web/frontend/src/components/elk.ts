@@ -1,6 +1,6 @@
 /** The layout engine in its worker; both are loaded when the first graph is drawn, or ahead of a large one. */
 import { anonymous } from '../document/anonymous'
-import type { ElkShape, LayoutCall } from '../document/layout'
+import type { ElkShape, LayoutCall } from '../document/elkGraph'
 
 /** So many graphs are remembered: those of a large behavior in several widths. */
 const KEPT = 600

@@ -1,7 +1,7 @@
 /** Graphs that are alike are the same graph to the layout engine. */
 import { expect, it } from 'vitest'
 import { anonymous } from './anonymous'
-import type { ElkShape } from './layout'
+import type { ElkShape } from './elkGraph'
 
 function machine(path: string, width = 100): ElkShape {
   return {

@@ -1,10 +1,5 @@
 /** Graphs without the names of what is in them: those that are alike need to be laid out only once. Pure. */
-import type { ElkArrow, ElkShape } from './layout'
-
-/** Ids are all that tells two alike graphs apart. */
-interface Shape extends ElkShape {
-  ports?: Shape[]
-}
+import type { ElkArrow, ElkShape } from './elkGraph'
 
 export interface Anonymous {
   readonly graph: ElkShape
@@ -29,7 +24,7 @@ export function anonymous(graph: ElkShape): Anonymous {
 
 type Rename = (id: string) => string
 
-function renamed(shape: Shape, to: Rename): Shape {
+function renamed(shape: ElkShape, to: Rename): ElkShape {
   const { id, ports, children, edges, ...rest } = shape
   return {
     id: to(id),

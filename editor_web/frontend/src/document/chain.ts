@@ -1,11 +1,14 @@
 /** Machines that run straight through are laid out by hand: a row, broken into several where it would be too long. */
-import type { GraphNode, GraphTransition } from '../api/types'
+import type { GraphTransition } from '../api/types'
+import type { Flow } from './flow'
 import type { Box, Point } from './geometry'
 
 export interface ChainItem {
   readonly id: string
   readonly width: number
   readonly height: number
+  /** From its top to the line that a row has in common, along which its arrows go. */
+  readonly axis: number
 }
 
 export interface ChainArrow {
@@ -27,11 +30,11 @@ const ARROW_MIN = 40
 const LABEL_OFFSET = 9
 
 /**
- * The children of a machine in the order in which it passes them, and what follows each;
- * undefined when its drawn transitions are more than one line.
+ * What follows each child of a machine, in the order in which it passes them; undefined when its drawn transitions
+ * are more than one line.
  */
 export function chainOf(
-  machine: GraphNode,
+  { order }: Flow,
   drawn: readonly GraphTransition[],
   outcomes: readonly string[],
 ): readonly GraphTransition[] | undefined {
@@ -42,7 +45,7 @@ export function chainOf(
   }
   const passed = new Set<string>()
   const chain: GraphTransition[] = []
-  let name = machine.initial ?? machine.children[0]?.name
+  let name = order[0]
   while (name !== undefined && !outcomes.includes(name)) {
     if (passed.has(name)) return undefined
     passed.add(name)
@@ -51,10 +54,13 @@ export function chainOf(
     name = next?.target
   }
   const ended = name !== undefined ? 1 : 0
-  return passed.size === machine.children.length && outcomes.length === ended ? chain : undefined
+  return passed.size === order.length && outcomes.length === ended ? chain : undefined
 }
 
-/** Lay items out in rows no longer than `limit` where they can be broken, as few and as even as that allows. */
+/**
+ * Lay items out like words in lines: each stands behind the one before, in a further row where its row would be longer
+ * than `limit`. So nothing moves that comes before a change, and a taller item moves nothing beside it.
+ */
 export function layOutChain(
   items: readonly ChainItem[],
   chain: readonly GraphTransition[],
@@ -62,20 +68,7 @@ export function layOutChain(
   limit: number,
 ): ChainLayout {
   const gaps = items.map((_, index) => Math.max(ARROW_MIN, labelWidth(chain[index]?.outcome ?? '') + 22))
-  const rows = fill(items, gaps, limit)
-  return drawRows(evened(rows, items, gaps), items, gaps, chain)
-}
-
-/** The same number of rows with the longest one as short as it can be. */
-function evened(rows: readonly number[], items: readonly ChainItem[], gaps: readonly number[]): readonly number[] {
-  const whole = items.reduce((sum, item, index) => sum + item.width + (gaps[index] ?? 0), 0)
-  let [low, high] = [0, whole]
-  while (high - low > 4) {
-    const middle = (low + high) / 2
-    if (fill(items, gaps, middle).length <= rows.length) high = middle
-    else low = middle
-  }
-  return rows.length === 1 ? rows : fill(items, gaps, high)
+  return drawRows(fill(items, gaps, limit), items, gaps, chain)
 }
 
 /** The index at which each row starts, when no row may be longer than `limit`. */
@@ -101,16 +94,16 @@ function drawRows(
 ): ChainLayout {
   const boxes = new Map<string, Box>()
   const rowEnds: number[] = []
-  const margin = starts.length > 1 ? MARGIN : 0
   let y = 6
   let width = 0
   starts.forEach((start, row) => {
     const end = starts[row + 1] ?? items.length
     const inRow = items.slice(start, end)
-    const height = Math.max(...inRow.map((item) => item.height))
-    let x = margin
+    const axis = Math.max(...inRow.map((item) => item.axis))
+    const height = axis + Math.max(...inRow.map((item) => item.height - item.axis))
+    let x = MARGIN
     inRow.forEach((item, index) => {
-      boxes.set(item.id, { x, y: y + (height - item.height) / 2, width: item.width, height: item.height })
+      boxes.set(item.id, { x, y: y + axis - item.axis, width: item.width, height: item.height })
       x += item.width + (index < inRow.length - 1 ? (gaps[start + index] ?? 0) : 0)
     })
     width = Math.max(width, x)
@@ -119,26 +112,35 @@ function drawRows(
     y += ROW_GAP
   })
   const arrows = chain.flatMap((transition, index) => {
-    const from = boxes.get(items[index]?.id ?? '')
-    const to = boxes.get(items[index + 1]?.id ?? '')
+    const from = portsOf(items[index], boxes)
+    const to = portsOf(items[index + 1], boxes)
     if (!from || !to) return []
     const row = starts.findIndex((start, i) => index >= start && index < (starts[i + 1] ?? items.length))
     return [{ transition, ...(starts.includes(index + 1) ? turn(from, to, (rowEnds[row] ?? 0) + ROW_GAP / 2) : straight(from, to)) }]
   })
-  return { width: width + margin, height: y - ROW_GAP, boxes, arrows }
+  return { width: width + MARGIN, height: y - ROW_GAP, boxes, arrows }
 }
 
-function straight(from: Box, to: Box): { points: readonly Point[]; label: Point } {
-  const y = from.y + from.height / 2
-  const start = { x: from.x + from.width, y }
-  const end = { x: to.x, y }
+/** Where arrows come into an item, and where they leave it. */
+interface Ports {
+  readonly entry: Point
+  readonly exit: Point
+}
+
+function portsOf(item: ChainItem | undefined, boxes: ReadonlyMap<string, Box>): Ports | undefined {
+  const box = item && boxes.get(item.id)
+  if (!box) return undefined
+  const y = box.y + item.axis
+  return { entry: { x: box.x, y }, exit: { x: box.x + box.width, y } }
+}
+
+function straight({ exit: start }: Ports, { entry: end }: Ports): { points: readonly Point[]; label: Point } {
+  const { y } = start
   return { points: [start, end], label: { x: (start.x + end.x) / 2 - 3, y: y - LABEL_OFFSET } }
 }
 
 /** From the end of a row around to the start of the next one, along the line between the two at `between`. */
-function turn(from: Box, to: Box, between: number): { points: readonly Point[]; label: Point } {
-  const start = { x: from.x + from.width, y: from.y + from.height / 2 }
-  const end = { x: to.x, y: to.y + to.height / 2 }
+function turn({ exit: start }: Ports, { entry: end }: Ports, between: number): { points: readonly Point[]; label: Point } {
   const right = start.x + MARGIN - 2
   const left = end.x - MARGIN
   return {

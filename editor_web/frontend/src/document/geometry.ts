@@ -12,11 +12,6 @@ export interface Size {
 
 export interface Box extends Point, Size {}
 
-/** How large a drawing appears in a pane, 1 being full size; more than that is no gain. */
-export function zoom(drawing: Size, pane: Size): number {
-  return Math.min(1, pane.width / drawing.width, pane.height / drawing.height)
-}
-
 export function moved(point: Point, by: Point): Point {
   return { x: point.x + by.x, y: point.y + by.y }
 }

@@ -5,40 +5,20 @@
  * they end at its outcomes. Positions are relative to the parent; courses are absolute.
  */
 import type { GraphNode, GraphTransition } from '../api/types'
+import { layOutBranching, OUTCOME_HEIGHT, type Direction, type Style } from './branching'
 import { chainOf, layOutChain } from './chain'
-import { edgeId, edgeOf, outcomeId } from './edgeId'
+import { flowOf, type Flow } from './flow'
+import { edgeId, outcomeId } from './edgeId'
+import type { LayoutCall } from './elkGraph'
 import { moved, type Box, type Point, type Size } from './geometry'
+import { widthFrom } from './rows'
 import { kindLabel } from './tree'
-
-export type Direction = 'RIGHT' | 'DOWN'
-
-export interface ElkShape {
-  id: string
-  width?: number
-  height?: number
-  x?: number
-  y?: number
-  children?: ElkShape[]
-  edges?: ElkArrow[]
-  layoutOptions?: Record<string, string>
-}
-
-export interface ElkArrow {
-  id: string
-  sources: string[]
-  targets: string[]
-  labels?: { text: string; width: number; height: number; x?: number; y?: number }[]
-  sections?: { startPoint: Point; endPoint: Point; bendPoints?: Point[] }[]
-}
 
 /** An outcome of a machine that is written on the node instead of drawn as an arrow. */
 export interface Exit {
   readonly outcome: string
   readonly target: string
 }
-
-/** Lays out one flat graph; elk's `layout`. */
-export type LayoutCall = (graph: ElkShape) => Promise<ElkShape>
 
 /** An arrow of a machine as it is drawn. */
 export interface Course {
@@ -59,15 +39,18 @@ export interface Layout {
 }
 
 const LEAF_HEIGHT = 74
+/** Arrows of a row come and go at the middle of its states, and at the height of that beside what is taller. */
+const AXIS = LEAF_HEIGHT / 2
 const EXIT_LINE = 22
-const LEAF_MIN = 156
-const LEAF_MAX = 280
+/** States are as wide as one of these, so that a longer name seldom moves what is beside it. */
+const LEAF_WIDTHS = [160, 220, 280] as const
 const HEADER = 38
 const PADDING = 14
+/** From the border of a machine to its first row. */
+const SIDE = 16
+const ABOVE = 6
 const GAP = 12
 const CONDITION_LINE = 20
-const OUTCOME_HEIGHT = 28
-const LABEL_HEIGHT = 16
 
 /** Width of `characters` of the interface's font at 12 px, measured on the safe side. */
 function textWidth(characters: number, perCharacter = 7.2): number {
@@ -103,12 +86,6 @@ export function exitsOf(parent: GraphNode | undefined, name: string): readonly E
   return parent.transitions.filter((t) => t.source === name && !drawn.has(t.target))
 }
 
-/** How a behavior is laid out; a chain longer than `rowLimit` pixels goes on in a further row. */
-export interface Style {
-  readonly direction: Direction
-  readonly rowLimit: number
-}
-
 /** Lay out a whole behavior. */
 export async function layOut(root: GraphNode, style: Style, call: LayoutCall): Promise<Layout> {
   const inner = await layOutNode(root, undefined, style, call)
@@ -142,7 +119,7 @@ async function layOutInside(node: GraphNode, style: Style, call: LayoutCall): Pr
 
 function leaf(node: GraphNode): Inner {
   const preferred = Math.max(textWidth(node.name.length, 8), textWidth(node.title.length, 6.6)) + 64
-  const width = Math.min(LEAF_MAX, Math.max(LEAF_MIN, preferred))
+  const width = widthFrom(LEAF_WIDTHS, preferred)
   return { width, height: LEAF_HEIGHT, boxes: new Map(), courses: [] }
 }
 
@@ -185,42 +162,69 @@ function regions(node: GraphNode, inside: readonly Inner[], direction: Direction
 }
 
 async function machine(node: GraphNode, inside: readonly Inner[], style: Style, call: LayoutCall): Promise<Inner> {
-  const chain = style.direction === 'RIGHT' ? chainOf(node, drawnTransitions(node), drawnOutcomes(node)) : undefined
-  if (chain) return straightMachine(node, inside, chain, style.rowLimit)
-  const laidOut = await call(machineGraph(node, inside, style))
-  const boxes = new Map<string, Box>()
-  const courses: Course[] = []
-  const shift = { x: PADDING, y: HEADER }
-  const sizes = new Map(node.children.map((child, index) => [child.path, inside[index]]))
-  for (const shape of laidOut.children ?? []) {
-    const { x = 0, y = 0, width = 0, height = 0 } = shape
-    place(shape.id, { x: x + shift.x, y: y + shift.y, width, height }, sizes.get(shape.id), boxes, courses)
-  }
-  for (const arrow of laidOut.edges ?? []) {
-    const course = courseOf(node, arrow, shift)
-    if (course) courses.push(course)
-  }
-  return {
-    width: Math.max((laidOut.width ?? 0) + 2 * PADDING, headerWidth(node)),
-    height: (laidOut.height ?? 0) + HEADER + PADDING,
-    boxes,
-    courses,
-  }
+  const flow = flowOf(
+    node.children.map((child) => child.name),
+    drawnTransitions(node),
+    node.initial,
+  )
+  const units: Units = new Map(
+    node.children.flatMap((child, index) => (inside[index] ? [[child.name, { child, inner: inside[index] }]] : [])),
+  )
+  const chain = style.direction === 'RIGHT' ? chainOf(flow, drawnTransitions(node), drawnOutcomes(node)) : undefined
+  const drawn = chain ? straightMachine(node, units, flow, chain, style.rowLimit) : await branchingMachine(node, units, flow, style, call)
+  standAside(drawn, units, flow.loose, style.rowLimit)
+  return { ...drawn, width: Math.max(drawn.width, headerWidth(node)), height: drawn.height + PADDING }
 }
 
-function straightMachine(node: GraphNode, inside: readonly Inner[], chain: readonly GraphTransition[], rowLimit: number): Inner {
-  const sizes = new Map(node.children.map((child, index) => [child.name, { id: child.path, inner: inside[index] }]))
-  const names = [chain[0]?.source ?? node.children[0]?.name ?? '', ...chain.map((t) => t.target)]
+/** The children of a machine by name, as large as they are. */
+type Units = ReadonlyMap<string, { readonly child: GraphNode; readonly inner: Inner }>
+
+/** The children that nothing leads to or from, in rows of their own below the others. */
+function standAside(drawn: Inner, units: Units, loose: readonly string[], rowLimit: number): void {
+  let [x, y, below] = [PADDING + SIDE, drawn.height + GAP, drawn.height]
+  for (const name of loose) {
+    const unit = units.get(name)
+    if (!unit) continue
+    const { width, height } = unit.inner
+    if (x > PADDING + SIDE && x + width > rowLimit) [x, y] = [PADDING + SIDE, below + GAP]
+    place(unit.child.path, { x, y, width, height }, unit.inner, drawn.boxes, drawn.courses)
+    x += width + 2 * GAP
+    below = Math.max(below, y + height)
+    drawn.width = Math.max(drawn.width, x - 2 * GAP + PADDING)
+  }
+  drawn.height = below
+}
+
+async function branchingMachine(node: GraphNode, units: Units, flow: Flow, style: Style, call: LayoutCall): Promise<Inner> {
+  const sizes = new Map([...units].map(([name, { inner }]) => [name, inner]))
+  const outcomes = new Map(drawnOutcomes(node).map((outcome) => [outcome, outcomeWidth(outcome)]))
+  const rows = await layOutBranching({ machine: node, flow, sizes, outcomes, labelWidth, axis: AXIS }, style, call)
+  const shift = { x: PADDING, y: HEADER + ABOVE }
+  const boxes = new Map<string, Box>()
+  const courses: Course[] = []
+  const inners = new Map([...units.values()].map(({ child, inner }) => [child.path, inner]))
+  for (const [id, box] of rows.boxes) place(id, { ...box, ...moved(box, shift) }, inners.get(id), boxes, courses)
+  for (const { id, source, target, outcome, points, label } of rows.lines) {
+    const shifted = { points: points.map((point) => moved(point, shift)), label: moved(label, shift) }
+    courses.push({ id, machine: node.path, source, target, outcome, ...shifted })
+  }
+  return { width: rows.width + 2 * PADDING, height: shift.y + rows.height, boxes, courses }
+}
+
+function straightMachine(node: GraphNode, units: Units, flow: Flow, chain: readonly GraphTransition[], rowLimit: number): Inner {
+  const names = [flow.order[0] ?? '', ...chain.map((t) => t.target)]
   const items = names.map((name) => {
-    const child = sizes.get(name)
-    if (!child?.inner) return { id: outcomeId(node.path, name), width: outcomeWidth(name), height: OUTCOME_HEIGHT }
-    return { id: child.id, width: child.inner.width, height: child.inner.height }
+    const unit = units.get(name)
+    if (!unit) {
+      return { id: outcomeId(node.path, name), width: outcomeWidth(name), height: OUTCOME_HEIGHT, axis: OUTCOME_HEIGHT / 2 }
+    }
+    return { id: unit.child.path, width: unit.inner.width, height: unit.inner.height, axis: AXIS }
   })
   const laidOut = layOutChain(items, chain, labelWidth, rowLimit)
   const shift = { x: PADDING, y: HEADER }
   const boxes = new Map<string, Box>()
   const courses: Course[] = []
-  const inners = new Map([...sizes.values()].map((child) => [child.id, child.inner]))
+  const inners = new Map([...units.values()].map(({ child, inner }) => [child.path, inner]))
   for (const [id, box] of laidOut.boxes) place(id, { ...box, ...moved(box, shift) }, inners.get(id), boxes, courses)
   laidOut.arrows.forEach((arrow, index) => {
     const { source, outcome } = arrow.transition
@@ -234,77 +238,7 @@ function straightMachine(node: GraphNode, inside: readonly Inner[], chain: reado
       label: moved(arrow.label, shift),
     })
   })
-  return {
-    width: Math.max(laidOut.width + 2 * PADDING, headerWidth(node)),
-    height: laidOut.height + HEADER + PADDING,
-    boxes,
-    courses,
-  }
-}
-
-function machineGraph(node: GraphNode, inside: readonly Inner[], style: Style): ElkShape {
-  const paths = new Map(node.children.map((child) => [child.name, child.path]))
-  const children: ElkShape[] = node.children.map((child, index) => ({
-    id: child.path,
-    width: inside[index]?.width ?? 0,
-    height: inside[index]?.height ?? 0,
-    // The first state opens the flow, whatever order the document has.
-    ...(child.name === node.initial ? { layoutOptions: { 'elk.layered.layering.layerConstraint': 'FIRST' } } : {}),
-  }))
-  const drawn = drawnOutcomes(node)
-  for (const outcome of drawn) {
-    children.push({ id: outcomeId(node.path, outcome), width: outcomeWidth(outcome), height: OUTCOME_HEIGHT })
-  }
-  const edges = node.transitions.flatMap((t) => {
-    const source = paths.get(t.source)
-    const target = paths.get(t.target) ?? (drawn.includes(t.target) ? outcomeId(node.path, t.target) : undefined)
-    if (!source || !target) return []
-    return [
-      {
-        id: edgeId({ machine: node.path, source: t.source, outcome: t.outcome }),
-        sources: [source],
-        targets: [target],
-        labels: [{ text: t.outcome, width: labelWidth(t.outcome), height: LABEL_HEIGHT }],
-      },
-    ]
-  })
-  return { id: node.path, children, edges, layoutOptions: options(style) }
-}
-
-function options({ direction }: Style): Record<string, string> {
-  return {
-    'elk.algorithm': 'layered',
-    'elk.direction': direction,
-    'elk.edgeRouting': 'ORTHOGONAL',
-    'elk.padding': '[top=6,left=0,bottom=0,right=0]',
-    'elk.spacing.nodeNode': '24',
-    'elk.spacing.edgeNode': '14',
-    'elk.spacing.edgeEdge': '12',
-    'elk.layered.spacing.nodeNodeBetweenLayers': '20',
-    'elk.layered.spacing.edgeNodeBetweenLayers': '14',
-    'elk.layered.spacing.edgeEdgeBetweenLayers': '12',
-    'elk.layered.considerModelOrder.strategy': 'PREFER_NODES',
-    'elk.layered.nodePlacement.strategy': 'BRANDES_KOEPF',
-    'elk.layered.nodePlacement.bk.fixedAlignment': 'BALANCED',
-    'elk.edgeLabels.inline': 'true',
-  }
-}
-
-function courseOf(node: GraphNode, arrow: ElkArrow, shift: Point): Course | undefined {
-  const section = arrow.sections?.[0]
-  const start = edgeOf(arrow.id)
-  if (!section || !start) return undefined
-  const points = [section.startPoint, ...(section.bendPoints ?? []), section.endPoint]
-  const label = arrow.labels?.[0]
-  return {
-    id: arrow.id,
-    machine: node.path,
-    source: arrow.sources[0] ?? start.source,
-    target: arrow.targets[0] ?? '',
-    outcome: start.outcome,
-    points: points.map((point) => moved(point, shift)),
-    label: moved({ x: (label?.x ?? 0) + (label?.width ?? 0) / 2, y: (label?.y ?? 0) + (label?.height ?? 0) / 2 }, shift),
-  }
+  return { width: laidOut.width + 2 * PADDING, height: laidOut.height + HEADER, boxes, courses }
 }
 
 /** Put a laid-out node at its place, and shift the courses of what is inside it with it. */

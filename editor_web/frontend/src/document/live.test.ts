@@ -11,6 +11,7 @@ const node = (status: string, visits = 1): NodeLive => ({
   duration_s: 0,
   cause: '',
   last_transition: '',
+  taken: {},
   plan: null,
 })
 const line = (seq: number): LogLine => ({ seq, time_s: 0, kind: 'log', level: 'info', path: '', text: '', causes: [] })

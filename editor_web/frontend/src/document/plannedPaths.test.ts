@@ -12,6 +12,7 @@ const node = (of: PlanLive | null): NodeLive => ({
   duration_s: 0,
   cause: '',
   last_transition: '',
+  taken: {},
   plan: of,
 })
 const path = (state: string): PathLive => ({ state, reason: 'a hand', length_m: 1, since_s: 5 })

@@ -25,6 +25,7 @@ const live = (status: string, entered_s = 0): NodeLive => ({
   duration_s: 0,
   cause: '',
   last_transition: '',
+  taken: {},
   plan: null,
 })
 const root = graph('root', [

@@ -150,6 +150,7 @@ describe('a moment', () => {
     duration_s: 0,
     cause: '',
     last_transition: '',
+    taken: {},
     plan: null,
   })
   const moment = (seq: number, nodes: PastRunState['nodes'], lines: readonly number[]): PastRunState => ({

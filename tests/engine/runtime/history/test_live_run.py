@@ -113,6 +113,26 @@ def test_the_arrow_taken_last_is_known_until_the_machine_starts_anew() -> None:
     assert live.state.nodes["root"].last_transition == ""
 
 
+def test_the_path_taken_is_counted_by_outcome_until_the_machine_starts_anew() -> None:
+    """Lit in the graph; a further visit of the state keeps the count."""
+
+    def leaves(seq: int, outcome: str) -> TransitionTaken:
+        return TransitionTaken(seq=seq, time_s=0.0, path="root", source="a", outcome=outcome, target="a")
+
+    live = folded(
+        entered(1, "root"),
+        entered(2, "root/a"),
+        leaves(3, "again"),
+        entered(4, "root/a", visit=2),
+        leaves(5, "again"),
+        entered(6, "root/a", visit=3),
+        leaves(7, "done"),
+    )
+    assert live.state.nodes["root/a"].taken == {"again": 2, "done": 1}
+    live.apply(entered(8, "root", visit=2))
+    assert live.state.nodes["root/a"].taken == {}
+
+
 def test_nothing_is_left_active_after_the_end() -> None:
     """Also when the end came without exits."""
     live = folded(entered(1, "root"), entered(2, "root/a"), RunEnded(seq=3, time_s=2.0, status="errored"))

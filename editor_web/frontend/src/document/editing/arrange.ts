@@ -6,8 +6,9 @@
  * outermost one; a route that is missing is drawn from port to port by the canvas.
  */
 import { chainOf, layOutChain } from '../chain'
+import { flowOf } from '../flow'
 import { moved, type Box, type Point, type Size } from '../geometry'
-import type { LayoutCall } from '../layout'
+import type { LayoutCall } from '../elkGraph'
 import { edgeId, outcomeId } from '../edgeId'
 import { adopt, empty, put, sized, type Content } from './content'
 import { byEngine, entryOf, portOf } from './engineLayout'
@@ -37,6 +38,8 @@ export interface Arrangement {
 const PADDING = 16
 const GAP = 14
 const PILL_GAP = 10
+/** Where a row begins. */
+const LEFT = 16
 /** Room on an arrow, to put something there. */
 const ARROW_ROOM = 36
 const LEVEL_GAP = 46
@@ -222,29 +225,51 @@ function boxesOf(content: Content, node: EditNode): readonly Box[] {
 
 async function laidOut(node: EditNode, units: readonly Content[], drawn: readonly string[], options: ArrangeOptions): Promise<Content> {
   const shown = node.transitions.filter((t) => drawn.includes(t.target) || node.children.some((child) => child.name === t.target))
-  const chain = chainOf(node, shown, drawn)
-  return chain ? inRows(node, units, chain, options.rowLimit) : byEngine(node, units, drawn, options)
+  const flow = flowOf(
+    node.children.map((child) => child.name),
+    shown,
+    node.initial,
+  )
+  const chain = chainOf(flow, shown, drawn)
+  const content = chain
+    ? inRows(node, units, [flow.order[0] ?? '', ...chain.map((t) => t.target)], chain, options.rowLimit)
+    : await byEngine(node, units, drawn, flow, options)
+  standAside(node, units, content, flow.loose, options.rowLimit)
+  return content
+}
+
+/** What nothing leads to or from stands below the others, in rows of its own. */
+function standAside(node: EditNode, units: readonly Content[], content: Content, loose: readonly string[], limit: number): void {
+  let [x, y] = [LEFT, content.height + PILL_GAP + GAP]
+  node.children.forEach((child, index) => {
+    const own = units[index]
+    if (!own || !loose.includes(child.name)) return
+    if (x > LEFT && x + own.width > limit) [x, y] = [LEFT, content.height + GAP]
+    put(content, child.path, { x, y, width: own.width, height: own.height }, own)
+    content.width = Math.max(content.width, x + own.width)
+    content.height = Math.max(content.height, y + own.height)
+    x += own.width + ARROW_ROOM
+  })
 }
 
 type Chain = NonNullable<ReturnType<typeof chainOf>>
 
-function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: number): Content {
-  const sizes = new Map(node.children.map((child, index) => [child.name, { path: child.path, own: units[index] }]))
-  const names = [chain[0]?.source ?? node.children[0]?.name ?? '', ...chain.map((t) => t.target)]
+function inRows(node: EditNode, units: readonly Content[], names: readonly string[], chain: Chain, limit: number): Content {
+  const sizes = new Map(node.children.map((child, index) => [child.name, { node: child, path: child.path, own: units[index] }]))
   const items = names.map((name) => {
     const child = sizes.get(name)
-    if (!child?.own) return { id: outcomeId(node.path, name), width: pillWidth(name), height: PILL_HEIGHT, own: undefined, lift: 0 }
+    if (!child?.own) {
+      return { id: outcomeId(node.path, name), width: pillWidth(name), height: PILL_HEIGHT, axis: PILL_HEIGHT / 2, own: undefined }
+    }
     const { width, height } = child.own
-    const lift = isSmall(child.own) ? entryOf(node, name, child.own) - height / 2 : 0
-    // A row is in line where its arrows are, not in the middle of its nodes.
-    return { id: child.path, width, height: height + 2 * Math.abs(lift), own: child.own, lift }
+    // A row is in line where the arrows of its nodes are; a container that is open stands as high as a closed one.
+    return { id: child.path, width, height, axis: entryOf(node, name, leafSize(child.node, node)), own: child.own }
   })
   const rows = layOutChain(items, chain, () => ARROW_ROOM, limit)
   const content = empty(rows.width, rows.height)
-  for (const { id, own, lift } of items) {
+  for (const { id, own } of items) {
     const box = rows.boxes.get(id)
-    const height = own?.height ?? PILL_HEIGHT
-    if (box) put(content, id, { ...box, y: box.y + (box.height - height) / 2 - lift, height }, own ?? empty())
+    if (box) put(content, id, box, own ?? empty())
   }
   chain.forEach((arrow, index) => {
     const from = content.own.get(items[index]?.id ?? '')
@@ -258,11 +283,6 @@ function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: 
     }
   })
   return content
-}
-
-/** A frame that is open is too tall for that. */
-function isSmall(own: Content): boolean {
-  return own.own.size === 0
 }
 
 /** From a port to the next item: with one bend in a row, around its end to the start of the next one. */

@@ -1,8 +1,9 @@
 /** Which containers show their inside, and what is drawn of a document. Pure. */
+import { rowLimitFor } from '../rows'
 import { allNodes, isFrame, isTreePart, type EditNode } from './model'
 
 /** So many nodes are drawn at most without being asked for. */
-const COMFORT = 70
+const COMFORT = 50
 
 /** The containers below `scope` that are open by themselves: from the outside in, as long as few nodes are drawn. */
 export function expandedByDefault(scope: EditNode): ReadonlySet<string> {
@@ -27,11 +28,35 @@ function onlyBranches(scope: EditNode): ReadonlySet<string> {
   return new Set(isTreePart(scope.kind) ? below(scope) : [])
 }
 
-/** Is the inside of `path` shown? What was opened or closed by hand stays so. */
-export function expansionOf(scope: EditNode, byHand: ReadonlyMap<string, boolean>, opens = true): (path: string) => boolean {
-  const byItself = opens ? expandedByDefault(scope) : onlyBranches(scope)
-  return (path) => byHand.get(path) ?? byItself.has(path)
+/**
+ * Is the inside of `path` shown? What was opened or closed by hand stays so, and what is in `kept` is not closed because
+ * more is drawn by now.
+ */
+export function expansionOf(
+  scope: EditNode,
+  byHand: ReadonlyMap<string, boolean>,
+  kept: ReadonlySet<string> = NONE,
+): (path: string) => boolean {
+  const byItself = expandedByDefault(scope)
+  const branches = onlyBranches(scope)
+  return (path) => byHand.get(path) ?? (byItself.has(path) || branches.has(path) || kept.has(path))
 }
+
+const NONE: ReadonlySet<string> = new Set()
+
+/** So many nodes are an overview. */
+const MANY = 300
+
+/**
+ * The longest row where `scope` fills the canvas. What is opened and closed by hand breaks no row anew, until so much is
+ * open that it is an overview.
+ */
+export function rowLimitOf(scope: EditNode, isOpen: (path: string) => boolean): number {
+  const drawn = drawnNodes(scope, isOpen).length
+  return rowLimitFor(drawn > MANY ? drawn : drawnNodes(scope, expansionOf(scope, BY_NOBODY)).length)
+}
+
+const BY_NOBODY: ReadonlyMap<string, boolean> = new Map()
 
 /** The nodes that are drawn when `scope` fills the canvas, parents before children. */
 export function drawnNodes(scope: EditNode, isOpen: (path: string) => boolean): readonly EditNode[] {

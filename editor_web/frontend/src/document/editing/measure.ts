@@ -1,6 +1,7 @@
 /** How large each node of the editor's canvas is, and where its ports are. Pure. */
 import { isMachine, outgoingTransitions, type EditNode } from './model'
 import type { Size } from '../geometry'
+import { widthFrom } from '../rows'
 
 const HEAD_HEIGHT = 48
 export const FRAME_HEAD = 40
@@ -10,8 +11,8 @@ export const PILL_HEIGHT = 28
 const TWIG_HEIGHT = 40
 /** Line and space above the rows. */
 const ROWS_TOP = 3.5
-const MIN_WIDTH = 172
-const MAX_WIDTH = 300
+/** Cards are as wide as one of these, so that a longer name seldom moves what is beside them. */
+const WIDTHS = [172, 204, 236, 268, 300] as const
 
 function textWidth(text: string, perCharacter: number): number {
   return Math.ceil(text.length * perCharacter)
@@ -33,7 +34,7 @@ export function leafSize(node: EditNode, parent: EditNode | undefined): Size {
   const rows = outgoing.map((each) => textWidth(transitionText(each.outcome, each.target), 6.4) + 44)
   const widest = Math.max(textWidth(node.name, 8.2) + 62, textWidth(node.title, 6.9) + 46, ...rows)
   return {
-    width: Math.min(MAX_WIDTH, Math.max(MIN_WIDTH, widest)),
+    width: widthFrom(WIDTHS, widest),
     height: outgoing.length > 0 ? HEAD_HEIGHT + rowsHeight(outgoing.length) : HEAD_HEIGHT + 6,
   }
 }

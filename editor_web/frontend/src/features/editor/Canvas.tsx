@@ -51,14 +51,14 @@ const SELECT_KEYS = ['Shift', 'Meta', 'Control']
 export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: boolean }) {
   const { ref, width, height } = useElementSize()
   const pane = width > 0 && height > 0 ? { width, height } : undefined
-  const { arranged, problem } = useArrangement(pane)
+  const { arranged, problem } = useArrangement()
   const [drawn, setDrawn] = useState<Arranged>()
   const isBusy = useIsBusy(drawn)
   return (
     <div className={classes['canvas']} ref={ref} data-canvas aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
-      {arranged && <Drawn arranged={arranged} pane={{ width, height }} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />}
+      {arranged && pane && <Drawn arranged={arranged} pane={pane} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />}
     </div>
   )
 }

@@ -1,7 +1,7 @@
 /** The whole behavior as a picture file, in the colours of the page: SVG, or PNG at twice the size. */
 import { createRoot } from 'react-dom/client'
 import { flushSync } from 'react-dom'
-import { expansionOf } from '../../document/editing/expansion'
+import { expansionOf, rowLimitOf } from '../../document/editing/expansion'
 import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
 import { tokensOf } from '../../components/tokens'
@@ -10,7 +10,6 @@ import { Picture } from './Picture'
 import { OF_PAGE, type Palette } from './pictureParts'
 import { draftOf, editor, showEditorRefusal, rootOf, showEditorNotice } from './store'
 
-const ROW_PX = 1800
 const SCALE = 2
 /** No browser draws more on one canvas than so many pixels a side. */
 const LARGEST_PX = 8192
@@ -33,8 +32,8 @@ async function pictureOfDraft(): Promise<string> {
   const root = rootOf(state)
   if (!root) throw new Error('there is nothing to draw yet')
   const { document: info } = draftOf(state)
-  const isOpen = expansionOf(root, state.opened, state.opensByItself)
-  const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, ROW_PX)
+  const isOpen = expansionOf(root, state.opened, state.keptOpen)
+  const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, rowLimitOf(root, isOpen))
   const host = document.createElement('div')
   const page = createRoot(host)
   flushSync(() => page.render(<Picture drawn={drawn} title={info?.name || state.id} palette={colours()} />))

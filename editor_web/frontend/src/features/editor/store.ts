@@ -63,8 +63,8 @@ export interface EditorState {
   readonly arrow: EdgeId | undefined
   /** Containers opened and closed by hand. */
   readonly opened: ReadonlyMap<string, boolean>
-  /** Whether containers that nobody opened or closed are open. */
-  readonly opensByItself: boolean
+  /** Containers that were open by themselves when what fills the canvas was drawn first. */
+  readonly keptOpen: ReadonlySet<string>
   readonly isBusy: boolean
   readonly notice: Notice | undefined
   readonly conflict: ConflictBody | undefined
@@ -113,7 +113,7 @@ export function blank(id: string): EditorState {
     selection: [],
     arrow: undefined,
     opened: new Map(),
-    opensByItself: true,
+    keptOpen: new Set(),
     isBusy: false,
     notice: undefined,
     conflict: undefined,
@@ -137,14 +137,10 @@ export function setEditor(change: Partial<EditorState>): void {
   useEditor.setState(change)
 }
 
-export function setOpensByItself(opensByItself: boolean): void {
-  if (editor().opensByItself !== opensByItself) setEditor({ opensByItself })
-}
-
 /** Is the inside of a container shown on the canvas? */
 export function isOpenNow(state: EditorState, path: string): boolean {
   const scope = scopeOf(state)
-  return scope ? expansionOf(scope, state.opened, state.opensByItself)(path) : false
+  return scope ? expansionOf(scope, state.opened, state.keptOpen)(path) : false
 }
 
 export function draftOf(state: EditorState): Draft {

@@ -1,8 +1,7 @@
 /** The live graph of a behavior: laid out once, lit by the run. */
-import { lookup, type Dict } from '../../document/dict'
 import '@xyflow/react/dist/style.css'
-import { ActionIcon, Box, Group, Loader, Tooltip } from '@mantine/core'
-import { useElementSize } from '@mantine/hooks'
+import { ActionIcon, Box, Button, Group, Loader, Tooltip } from '@mantine/core'
+import { useCallbackRef, useElementSize, useReducedMotion } from '@mantine/hooks'
 import {
   IconArrowsMaximize,
   IconArrowsMoveVertical,
@@ -12,23 +11,24 @@ import {
   IconMinus,
   IconPlus,
 } from '@tabler/icons-react'
-import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
+import { Background, BackgroundVariant, Panel as Corner, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
 import { useCallback, useEffect, useMemo, useState, type MouseEvent, type ReactNode } from 'react'
-import { useLive } from '../../api/live'
-import type { GraphNode, NodeLive } from '../../api/types'
+import type { GraphNode } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { flatten, isContainer } from '../../document/tree'
+import { pathsTo } from '../../document/path'
 import { ArrowHeads, CourseLine } from './CourseLine'
 import { pointOf } from '../../components/menuPoint'
-import type { Point } from '../../document/geometry'
+import type { Point, Size } from '../../document/geometry'
+import type { Direction } from '../../document/branching'
 import classes from './graph.module.css'
 import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
 import { ContainerNode, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useFolding, type Folding } from './useFolding'
-import { useLayout, type Flow, type LaidOut } from './useLayout'
+import { useFollowedView, useFollowing, type Following } from './useFollowing'
+import { useLayout, type LaidOut } from './useLayout'
 
 const NODE_TYPES = { leaf: withLowDetail(LeafNode), container: withLowDetail(ContainerNode), outcome: withLowDetail(OutcomeNodeShell) }
 const EDGE_TYPES = { course: CourseLine }
@@ -70,13 +70,18 @@ export function Graph(props: GraphProps) {
 
 function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpointForm, of }: GraphProps) {
   const { ref, width, height } = useElementSize()
-  const [flow, setFlow] = useState<Flow>('AUTO')
-  const [follows, setFollows] = useState(false)
+  const [flow, setFlow] = useState<Direction>('RIGHT')
   const pane = width > 0 && height > 0 ? { width, height } : undefined
-  const fold = useFolding(root, shown)
-  const { laidOut, problem } = useLayout(fold.drawn, root, flow, pane)
+  const following = useFollowing(root)
+  const fold = useFolding(root, shown, following.isOn ? following.targets : '')
+  const { laidOut, problem } = useLayout(fold.drawn, root, flow)
   const detail = useStore((s) => detailAt(s.transform[2]))
-  const turned = laidOut?.direction === 'RIGHT' ? 'DOWN' : 'RIGHT'
+  const turned = flow === 'RIGHT' ? 'DOWN' : 'RIGHT'
+  /** To collapse what is followed is to look at something else. */
+  const toggle = useCallbackRef((path: string) => {
+    if (following.targets.split('\n').some((each) => pathsTo(each).includes(path))) following.pause()
+    fold.toggle(path)
+  })
   return (
     <Panel
       title="Graph"
@@ -85,7 +90,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpo
         <>
           {breadcrumb}
           <Box flex={1} />
-          <CanvasTools onTurn={() => setFlow(turned)} follows={follows} onFollow={() => setFollows(!follows)} fold={fold} />
+          <CanvasTools onTurn={() => setFlow(turned)} following={following} fold={fold} />
         </>
       }
     >
@@ -98,15 +103,15 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpo
             <span>Drawing…</span>
           </Group>
         )}
-        {laidOut && (
-          <FoldContext value={fold.toggle}>
+        {laidOut && pane && (
+          <FoldContext value={toggle}>
             <Drawn
               laidOut={laidOut}
-              pane={`${width}x${height}`}
+              pane={pane}
               selected={selected}
               onSelect={onSelect}
               shown={shown}
-              follows={follows}
+              following={following}
               {...(behavior === undefined ? {} : { behavior })}
               {...(breakpointForm && { breakpointForm })}
             />
@@ -119,24 +124,16 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpo
 
 interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'of'> {
   readonly laidOut: LaidOut
-  readonly pane: string
-  readonly follows: boolean
+  readonly pane: Size
+  readonly following: Following
 }
 
-/** The paths of the active leaves, in one string so that it changes only when they do. */
-function activeLeaves(root: GraphNode, nodes: Dict<NodeLive>): string {
-  const leaves = flatten(root).filter((node) => !isContainer(node) && lookup(nodes, node.path)?.status === 'active')
-  return leaves.map((node) => node.path).join('\n')
-}
-
-function followOptions(active: string) {
-  return { nodes: active.split('\n').map((id) => ({ id })), padding: 0.35, maxZoom: 1, duration: 300 }
-}
-
-function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior, breakpointForm }: DrawnProps) {
+function Drawn({ laidOut, pane, selected, onSelect, shown, following, behavior, breakpointForm }: DrawnProps) {
   const [menu, setMenu] = useState<{ readonly node: GraphNode; readonly at: Point }>()
   const { fitView } = useReactFlow()
-  const active = useLive((s) => (follows ? activeLeaves(laidOut.root, s.nodes) : ''))
+  const isStill = useReducedMotion() ?? false
+  const showAll = useCallback(() => void fitView(fitOptions()), [fitView])
+  const onMoved = useFollowedView(laidOut, pane, following, showAll)
   const drawn = useMemo(() => canvasNodes(laidOut), [laidOut])
   const edges = useMemo(() => canvasEdges(laidOut), [laidOut])
   const nodes = useMemo<CanvasNode[]>(
@@ -148,13 +145,10 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior, br
   const isFar = useStore((s) => s.transform[2] < LOW_DETAIL_ZOOM) && hasMany
 
   useEffect(() => {
-    const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
-    return () => cancelAnimationFrame(frame)
-  }, [laidOut, pane, active, fitView])
-
-  useEffect(() => {
-    if (shown) void fitView({ nodes: [{ id: shown.path }], padding: 0.6, maxZoom: 1, duration: 300 })
-  }, [shown, fitView])
+    if (!shown) return
+    onMoved()
+    void fitView({ nodes: [{ id: shown.path }], padding: 0.6, maxZoom: 1, duration: isStill ? 0 : 300 })
+  }, [shown, fitView, onMoved, isStill])
 
   const onNodeClick = useCallback((_: unknown, node: CanvasNode) => onSelect(node.type === 'outcome' ? undefined : node.id), [onSelect])
 
@@ -188,6 +182,8 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior, br
         onNodeClick={onNodeClick}
         onNodeContextMenu={onNodeMenu}
         onPaneClick={() => onSelect(undefined)}
+        // Without an event it is the page that moves it.
+        onMoveStart={(event) => event && onMoved()}
         onNodesChange={(changes) => {
           const chosen = changes.find((change) => change.type === 'select' && change.selected)
           if (chosen && 'id' in chosen) onSelect(chosen.id)
@@ -204,6 +200,13 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows, behavior, br
         aria-label="Graph of the behavior"
       >
         <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+        {!following.isOn && following.targets !== '' && (
+          <Corner position="bottom-center">
+            <Button size="xs" leftSection={<IconFocus2 size={15} aria-hidden />} onClick={following.resume}>
+              Follow
+            </Button>
+          </Corner>
+        )}
         {isFar && <LowDetailEdges courses={laidOut.layout.courses} />}
       </ReactFlow>
     </LowDetailContext>
@@ -218,16 +221,20 @@ function detailAt(zoom: number): 'all' | 'names' | 'far' {
 
 interface CanvasToolsProps {
   readonly onTurn: () => void
-  readonly follows: boolean
-  readonly onFollow: () => void
+  readonly following: Following
   readonly fold: Folding
 }
 
-function CanvasTools({ onTurn, follows, onFollow, fold }: CanvasToolsProps) {
+function CanvasTools({ onTurn, following, fold }: CanvasToolsProps) {
   const { fitView, zoomIn, zoomOut } = useReactFlow()
+  /** What is asked for here is not taken back by the run. */
+  const byHand = (move: () => unknown) => () => {
+    if (following.targets !== '') following.pause()
+    move()
+  }
   return (
     <Group gap={2} wrap="nowrap">
-      <Tool label="Follow the active node" onClick={onFollow} pressed={follows}>
+      <Tool label="Follow the active nodes" onClick={following.isOn ? following.pause : following.resume} pressed={following.isOn}>
         <IconFocus2 size={16} />
       </Tool>
       <Tool label="Collapse what is not active" onClick={fold.toggleInactive} pressed={fold.hidesInactive}>
@@ -238,13 +245,13 @@ function CanvasTools({ onTurn, follows, onFollow, fold }: CanvasToolsProps) {
           <IconArrowsMoveVertical size={16} />
         </Tool>
       )}
-      <Tool label="Zoom in" onClick={() => void zoomIn({ duration: 150 })}>
+      <Tool label="Zoom in" onClick={byHand(() => zoomIn({ duration: 150 }))}>
         <IconPlus size={16} />
       </Tool>
-      <Tool label="Zoom out" onClick={() => void zoomOut({ duration: 150 })}>
+      <Tool label="Zoom out" onClick={byHand(() => zoomOut({ duration: 150 }))}>
         <IconMinus size={16} />
       </Tool>
-      <Tool label="Show all" onClick={() => void fitView({ ...fitOptions(), duration: 200 })}>
+      <Tool label="Show all" onClick={byHand(() => fitView({ ...fitOptions(), duration: 200 }))}>
         <IconArrowsMaximize size={16} />
       </Tool>
       <Tool label="Turn the direction of the flow" onClick={onTurn}>

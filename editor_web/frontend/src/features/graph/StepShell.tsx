@@ -9,6 +9,7 @@ import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
 import { StatusIcon } from '../../components/StatusIcon'
+import { lookup } from '../../document/dict'
 import { transitionId } from '../../document/edgeId'
 import { nameOfPath, pathsTo } from '../../document/path'
 import { activeLeaves } from '../../document/runProgress'
@@ -148,23 +149,30 @@ function Fold({ path, name, isFolded }: { path: string; name: string; isFolded: 
   )
 }
 
-/** The outcomes that are written here instead of drawn; the one that was taken is lit. */
+/** The outcomes that are written here instead of drawn; those that were taken are lit, the latest one most. */
 function Exits({ data }: { data: StepNode['data'] }) {
   const lastTransition = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.last_transition : undefined))
+  const taken = useNodePart(data.node.path, (live) => (data.exits.length > 0 ? live?.taken : undefined))
   if (data.exits.length === 0) return null
   return (
     <div className={classes.exits}>
-      {data.exits.map(({ outcome, target }) => (
-        <span
-          key={outcome}
-          data-exit={outcome}
-          data-taken={lastTransition === transitionId({ source: data.node.name, outcome }) || undefined}
-          title={`${outcome} ends the machine with ${target}`}
-        >
-          <IconLogout size={11} aria-hidden />
-          {outcome === target ? outcome : `${outcome} → ${target}`}
-        </span>
-      ))}
+      {data.exits.map(({ outcome, target }) => {
+        const isLatest = lastTransition === transitionId({ source: data.node.name, outcome })
+        const count = (taken && lookup(taken, outcome)) ?? 0
+        return (
+          <span
+            key={outcome}
+            data-exit={outcome}
+            data-taken={isLatest || undefined}
+            {...(count > 0 && !isLatest ? { style: { color: 'var(--done)' } } : {})}
+            title={`${outcome} ends the machine with ${target}`}
+          >
+            <IconLogout size={11} aria-hidden />
+            {outcome === target ? outcome : `${outcome} → ${target}`}
+            {count > 1 && ` ×${count}`}
+          </span>
+        )
+      })}
     </div>
   )
 }

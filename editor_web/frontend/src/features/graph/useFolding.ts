@@ -18,8 +18,8 @@ export interface Folding {
 
 const NONE: Folded = new Set()
 
-/** `shown` is a node that was asked for: what is around it is unfolded. */
-export function useFolding(root: GraphNode, shown: { readonly path: string } | undefined): Folding {
+/** What is around `shown`, a node that was asked for, is unfolded, and what is around the paths that are `followed`. */
+export function useFolding(root: GraphNode, shown: { readonly path: string } | undefined, followed: string): Folding {
   const [byHand, setByHand] = useState(NONE)
   const [hidesInactive, setHidesInactive] = useState(false)
   // In one string, so that it changes only when a container becomes active or is left.
@@ -39,6 +39,13 @@ export function useFolding(root: GraphNode, shown: { readonly path: string } | u
       setByHand(unfoldedTo(shown.path, paths))
       setHidesInactive(false)
     }
+  }
+
+  const [open, setOpen] = useState('')
+  if (followed !== open) {
+    setOpen(followed)
+    const around = followed.split('\n').reduce<Folded>((left, path) => unfoldedTo(path, left), byHand)
+    if (around.size !== byHand.size) setByHand(around)
   }
 
   const toggle = useCallback(
