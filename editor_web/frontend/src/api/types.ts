@@ -1369,6 +1369,28 @@ export interface MeasureSpread {
   readonly failures: Quantiles | null
 }
 
+/** What was measured at a time of the run's clock, after event `seq`. `path` is the node whose goal was active at the device then, empty for none. `device` is its address: `left`, `left/gripper`. `value` and `limit`, what was asked for or is allowed, are in `unit`; None where there is none. */
+export interface MeasuredMarker {
+  readonly kind: "contact" | "force" | "grasp" | "limit"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly device: string
+  readonly value: number | null
+  readonly unit: string
+  readonly limit: number | null
+  readonly text: string
+}
+
+/** The measured markers of a run up to event `seq`, in order of time. `unread` says why the telemetry is not in them; it is empty where it is. `every` is n where only every n-th message of a topic was read, for there are too many; peaks between those are missing. `left_out` counts dropped markers. */
+export interface MeasuredMarkers {
+  readonly seq: number
+  readonly marks: readonly MeasuredMarker[]
+  readonly unread: string
+  readonly every: number
+  readonly left_out: number
+}
+
 /** A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit. */
 export interface MeasuredValue {
   readonly quantity: string
