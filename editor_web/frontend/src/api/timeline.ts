@@ -8,7 +8,7 @@ import { call, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
 import { queryKeys } from './queryKeys'
-import type { OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
+import type { MeasuredMarkers, OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
 import { pageStore } from './pageStore'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
@@ -48,6 +48,7 @@ export const pastApi = {
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
   userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),
+  measured: (subject: Subject) => call<MeasuredMarkers>(`${subject.address}/measured`),
   failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
 }
 
@@ -66,6 +67,8 @@ export const pastQueries = {
     }),
   userdata: (subject: Subject, seq: number) =>
     queryOptions({ queryKey: queryKeys.userdata(subject, seq), queryFn: () => pastApi.userdata(subject, seq) }),
+  measured: (subject: Subject, hasEnded: boolean) =>
+    queryOptions({ queryKey: queryKeys.measured(subject, hasEnded), queryFn: () => pastApi.measured(subject) }),
   failure: (subject: Subject) => queryOptions({ queryKey: queryKeys.failure(subject), queryFn: () => pastApi.failure(subject) }),
 }
 

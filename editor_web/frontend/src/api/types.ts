@@ -953,6 +953,12 @@ export interface GateWait {
   readonly required: string
 }
 
+/** Another run whose arms are shown as ghosts, at a time of its own clock. */
+export interface GhostRequest {
+  readonly run: string
+  readonly time_s: number
+}
+
 /** Last line: the end of the goal; the device is at rest. */
 export interface GoalEndLine {
   readonly k: "end"
@@ -1745,19 +1751,21 @@ export interface PastUserdata {
   readonly problem: string
 }
 
-/** From the page: show this run at this time of its clock; null shows the live cell. */
+/** From the page: show this run at this time of its clock, with the arms of another; null shows the live cell. */
 export interface PastViewRequest {
   readonly run: string
   readonly time_s: number | null
+  readonly ghost?: GhostRequest | null
 }
 
-/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. */
+/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. `ghost_problem` says why the arms of the other run are not shown. */
 export interface PastViewState {
   readonly run: string
   readonly time_s: number
   readonly from_s: number
   readonly until_s: number
   readonly problem: string
+  readonly ghost_problem: string
 }
 
 /** Insert nodes, in the form that `copy` returns, into a container. */

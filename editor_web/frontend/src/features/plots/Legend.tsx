@@ -17,7 +17,7 @@ interface LegendProps {
   readonly curves: Curves
   readonly atS: number | undefined
   readonly endS: number | undefined
-  readonly onRemove?: (id: string) => void
+  readonly onRemove?: ((id: string) => void) | undefined
 }
 
 export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
