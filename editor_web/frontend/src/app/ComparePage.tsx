@@ -79,7 +79,14 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
   const lengths = visit ? [durationOf(visit.left), durationOf(visit.right)] : [found.left.duration_s, found.right.duration_s]
   const durationS = Math.max(SHORTEST_S, ...lengths.map((length) => length ?? 0))
   // Curves and 3D view show the same moment.
-  const aligned = { left, right, visit, durationS, cursorS: cursorS === undefined ? undefined : Math.min(cursorS, durationS), onGo: setCursor }
+  const aligned = {
+    left,
+    right,
+    visit,
+    durationS,
+    cursorS: cursorS === undefined ? undefined : Math.min(cursorS, durationS),
+    onGo: setCursor,
+  }
   const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
   const details = (
     <Tabs defaultValue="visit" keepMounted={false}>

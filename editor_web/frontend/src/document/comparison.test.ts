@@ -42,9 +42,9 @@ it('names each visit of a comparison in the address, and finds it again', () => 
 })
 
 it('shows both runs at the same time since the start of a visit', () => {
-  const visit = { path: 'root/a', left: { start_s: 3 }, right: { start_s: 5 } } as AlignedVisit
-  expect(alignedMoment('l', 'r', visit, 0.5)).toEqual({ solid: ['l', 3.5], ghost: ['r', 5.5] })
+  const aligned = { path: 'root/a', left: { start_s: 3 }, right: { start_s: 5 } } as AlignedVisit
+  expect(alignedMoment('l', 'r', aligned, 0.5)).toEqual({ solid: ['l', 3.5], ghost: ['r', 5.5] })
   expect(alignedMoment('l', 'r', undefined, 0.5)).toEqual({ solid: ['l', 0.5], ghost: ['r', 0.5] })
-  expect(alignedMoment('l', 'r', { ...visit, right: null }, 0)).toEqual({ solid: ['l', 3], ghost: undefined })
-  expect(alignedMoment('l', 'r', { ...visit, left: null }, 0)).toEqual({ solid: ['r', 5], ghost: undefined })
+  expect(alignedMoment('l', 'r', { ...aligned, right: null }, 0)).toEqual({ solid: ['l', 3], ghost: undefined })
+  expect(alignedMoment('l', 'r', { ...aligned, left: null }, 0)).toEqual({ solid: ['r', 5], ghost: undefined })
 })

@@ -168,9 +168,17 @@ export type MeasuredKind = MeasuredMarker['kind']
 export type MarkKind = 'failure' | 'command' | 'gate' | 'goal' | 'change' | 'fault' | 'warning' | MeasuredKind
 
 export const MARK_KINDS: readonly MarkKind[] = [
-  ...(['failure', 'warning', 'fault'] as const),
-  ...(['contact', 'grasp', 'force', 'limit'] as const),
-  ...(['command', 'gate', 'change', 'goal'] as const),
+  'failure',
+  'warning',
+  'fault',
+  'contact',
+  'grasp',
+  'force',
+  'limit',
+  'command',
+  'gate',
+  'change',
+  'goal',
 ]
 
 /** In words, for menus. */

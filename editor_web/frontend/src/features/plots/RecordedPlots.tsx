@@ -63,7 +63,13 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
       >
         Whole
       </Button>
-      <Button size="compact-xs" variant="default" disabled={isEmpty} leftSection={<IconDownload size={14} aria-hidden />} onClick={plot.saveCsv}>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={isEmpty}
+        leftSection={<IconDownload size={14} aria-hidden />}
+        onClick={plot.saveCsv}
+      >
         CSV
       </Button>
       <Button
@@ -101,13 +107,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
               onPan={(byS) => part && setPart(panned(part, byS, durationS))}
               onWidth={setWidth}
             />
-            <Legend
-              entries={entries}
-              curves={curves}
-              atS={cursorS}
-              endS={undefined}
-              onRemove={plot.remove}
-            />
+            <Legend entries={entries} curves={curves} atS={cursorS} endS={undefined} onRemove={plot.remove} />
           </div>
         )}
       </div>

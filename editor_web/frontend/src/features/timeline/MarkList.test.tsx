@@ -7,8 +7,15 @@ import { withMeasured } from '../../document/measured'
 import { MarkList } from './MarkList'
 
 const CONTACT: MeasuredMarker = {
-  ...{ kind: 'contact', seq: 4, time_s: 1.25, path: 'root/touch', device: 'left' },
-  ...{ value: 12.5, unit: 'N', limit: 10, text: 'left stopped at a contact after 20.0 mm' },
+  kind: 'contact',
+  seq: 4,
+  time_s: 1.25,
+  path: 'root/touch',
+  device: 'left',
+  value: 12.5,
+  unit: 'N',
+  limit: 10,
+  text: 'left stopped at a contact after 20.0 mm',
 }
 const MARKS = withMeasured([{ seq: 1, time_s: 0.5, kind: 'goal', path: 'root/touch', text: 'left/move_until_contact' }], [CONTACT])
 const TOLD = { seq: 4, marks: [CONTACT], unread: '', every: 1, left_out: 0 }

@@ -56,7 +56,10 @@ function Marks({ marks, measured, cursorS, onGo }: MarkListProps) {
                 aria-current={first + index === here ? 'step' : undefined}
                 label={`${mark.time_s.toFixed(2)} s · ${kindWord(mark.kind)} · ${mark.text}`}
                 description={mark.path}
-                styles={{ label: { fontSize: '0.8rem' }, description: { '--description-opacity': 1, '--description-color': 'var(--quiet)' } }}
+                styles={{
+                  label: { fontSize: '0.8rem' },
+                  description: { '--description-opacity': 1, '--description-color': 'var(--quiet)' },
+                }}
                 noWrap
                 title={mark.text}
                 onClick={() => onGo(mark)}

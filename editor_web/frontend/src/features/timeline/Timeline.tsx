@@ -205,8 +205,14 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
             <Splitter isFlat label="Height of the lanes" />
             <Pane id="curves" defaultSize="52%" minSize="20%" style={{ position: 'relative' }}>
               {curves(of, {
-                ...{ view, durationS: nowS, leftPx, cursorS: here.timeS, isGoingOn },
-                ...{ onGo: goTo, onZoom: zoom, onPan },
+                view,
+                durationS: nowS,
+                leftPx,
+                cursorS: here.timeS,
+                isGoingOn,
+                onGo: goTo,
+                onZoom: zoom,
+                onPan,
               })}
             </Pane>
           </Group>
