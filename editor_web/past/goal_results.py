@@ -72,7 +72,7 @@ def _marker(sent: GoalSent, end: GoalFinished) -> MeasuredMarker | None:
     device, _, skill = sent.address.rpartition("/")
     if skill == _GUARDED_MOVE and result.get("contact") is True:
         force_n, asked_n = _number(result, "force_n"), _number(sent.request, "force_n")
-        text = f"{device} stopped at a contact after {_millimetres(_number(result, 'travelled_m'))}"
+        text = f"{device} stopped at a contact after {_millimetres(_number(result, 'travelled_m'))}; at rest"
         return _made("contact", end, device, force_n, asked_n, text)
     if skill == _PRESSING and end.status == "succeeded":
         largest_n, rms_n = _number(result, "force_error_max_n"), _number(result, "force_error_rms_n")

@@ -185,7 +185,8 @@ def test_recorded_curves_below_the_lanes_have_their_axis_and_their_cursor(
         page.keyboard.press("Escape")
         curves = page.get_by_role("slider", name="2 recorded curves")
         lanes, below = moment.bounding_box(), curves.bounding_box()
-        assert lanes and below
+        assert lanes is not None
+        assert below is not None
         middle = lanes["x"] + lanes["width"] / 2
         page.mouse.click(middle, lanes["y"] + 5)
         expect(moment).not_to_have_attribute("aria-valuenow", "0")

@@ -85,7 +85,7 @@ GUARDED: dict[str, object] = {"force_n": 10.0}
     ("address", "request_", "result", "expected"),
     [
         ("left/move_until_contact", GUARDED, {"contact": True, "force_n": 12.5, "travelled_m": 0.02},
-         ("contact", 12.5, 10.0, "left stopped at a contact after 20.0 mm")),
+         ("contact", 12.5, 10.0, "left stopped at a contact after 20.0 mm; at rest")),
         ("left/move_until_contact", GUARDED, {"contact": False, "force_n": 0.3, "travelled_m": 0.1}, None),
         ("left/gripper/gripper_grasp", {"force_n": 30.0}, {"held": True, "force_n": 29.9, "width_m": 0.0303},
          ("grasp", 29.9, 30.0, "left/gripper holds something, 30.3 mm wide")),

@@ -42,6 +42,7 @@ it.each([
   [{ kind: 'grasp' }, '12.3 N, asked for 10 N', 'Force 12.3 N'],
   [{ limit: null }, '12.3 N', 'Force 12.3 N'],
   [{ value: null }, '', 'Force'],
+  [{ value: 6.5e-9 }, '0 N, limit 10 N', 'Force 0 N'],
 ] as const)('says only what is known: %j', (rest, words, lane) => {
   expect(valueWords(measured(0, 1, rest))).toBe(words)
   expect(laneWords('Force', measured(0, 1, rest))).toBe(lane)

@@ -46,6 +46,7 @@ export function rowOf(rows: readonly ShownRow[], path: string): number {
   return -1
 }
 
+/** What is as good as nothing is 0. */
 function short(value: number): string {
-  return numeral(Number(value.toPrecision(3)))
+  return Math.abs(value) < 1e-3 ? '0' : numeral(Number(value.toPrecision(3)))
 }

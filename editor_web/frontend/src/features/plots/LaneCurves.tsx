@@ -6,7 +6,7 @@ import { useIsVisible } from '../../components/useIsVisible'
 import type { SharedAxis } from '../../document/timeline'
 import { savePicture } from './exporting'
 import { FieldChooser } from './FieldChooser'
-import { Legend } from './Legend'
+import { LegendLine } from './LegendLine'
 import { settledPart, type RecordedSource } from './recorded'
 import { RecordedCanvas } from './RecordedCanvas'
 import { useRecordedPlot } from './useRecordedPlot'
@@ -48,9 +48,13 @@ export function LaneCurves({ sources, axis }: LaneCurvesProps) {
               {isChoosing && topics && <FieldChooser topics={topics} chosen={plot.chosen} onChoose={plot.choose} />}
             </Popover.Dropdown>
           </Popover>
-          <Text span flex={1} truncate fz="0.78rem" c="dimmed">
-            {problem || (isEmpty && topics ? 'Nothing is selected' : '')}
-          </Text>
+          {isEmpty || problem ? (
+            <Text span flex={1} truncate fz="0.78rem" c="dimmed">
+              {problem || (topics ? 'Nothing is selected' : '')}
+            </Text>
+          ) : (
+            <LegendLine entries={entries} curves={curves} atS={cursorS} />
+          )}
           <Button
             size="compact-xs"
             variant="subtle"
@@ -84,7 +88,6 @@ export function LaneCurves({ sources, axis }: LaneCurvesProps) {
             onWidth={setWidth}
           />
         )}
-        {!isEmpty && <Legend entries={entries} curves={curves} atS={cursorS} endS={undefined} onRemove={plot.remove} />}
       </Flex>
     </div>
   )

@@ -95,7 +95,7 @@ function lane(
   pen.fillStyle = look.text
   pen.textAlign = 'right'
   pen.textBaseline = 'middle'
-  const marks = marksOf(low, high, Math.max(2, Math.floor((area.bottom - area.top) / 24)))
+  const marks = marksOf(low, high, Math.max(1, Math.floor((area.bottom - area.top) / 24)))
   for (const mark of marks) {
     pen.beginPath()
     pen.moveTo(area.left, Math.round(y(mark)) + 0.5)

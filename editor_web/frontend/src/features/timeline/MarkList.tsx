@@ -45,7 +45,7 @@ function Marks({ marks, measured, cursorS, onGo }: MarkListProps) {
   const notes = notesOf(measured, marks.length > MOST)
   return (
     <Stack gap={0}>
-      <ScrollArea.Autosize mah={300} type="auto">
+      <ScrollArea.Autosize mah={300} type="auto" scrollbars="y">
         <Stack component="ul" aria-label="Marks" gap={0} m={0} p={0} style={{ listStyle: 'none' }}>
           {marks.slice(first, first + MOST).map((mark, index) => (
             <li key={`${mark.seq} ${mark.kind} ${mark.text}`}>
@@ -60,8 +60,6 @@ function Marks({ marks, measured, cursorS, onGo }: MarkListProps) {
                   label: { fontSize: '0.8rem' },
                   description: { '--description-opacity': 1, '--description-color': 'var(--quiet)' },
                 }}
-                noWrap
-                title={mark.text}
                 onClick={() => onGo(mark)}
               />
             </li>

@@ -199,11 +199,11 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
       <Box ref={place} pos="absolute" inset={0}>
         {curves && hasCurves ? (
           <Group orientation="vertical" style={{ height: '100%' }}>
-            <Pane id="lanes" defaultSize="48%" minSize="20%" style={{ position: 'relative' }}>
+            <Pane id="lanes" defaultSize="40%" minSize="20%" style={{ position: 'relative' }}>
               {lanes}
             </Pane>
             <Splitter isFlat label="Height of the lanes" />
-            <Pane id="curves" defaultSize="52%" minSize="20%" style={{ position: 'relative' }}>
+            <Pane id="curves" defaultSize="60%" minSize="20%" style={{ position: 'relative' }}>
               {curves(of, {
                 view,
                 durationS: nowS,
