@@ -15,7 +15,7 @@ from engine.event import Event
 
 MAX_MEASURED = 2000
 """Markers in one answer; joints at their limits are dropped first."""
-UNDER_WAY = "telemetry is read when the run has ended"
+STILL_ACTIVE = "telemetry is read when the run has ended"
 NOT_RECORDED = "there is no recording of this run"
 _Key = tuple[int, bool, tuple[tuple[str, int, int], ...]]
 
@@ -60,7 +60,7 @@ def _measured(events: Sequence[Event], files: Sequence[Path], *, seq: int, has_e
             marks += telemetry_markers(pieces, performed_goals(events), seq_at)
             every = read_every(pieces)
     shown, left_out = _limited(marks)
-    unread = "" if files else NOT_RECORDED if has_ended else UNDER_WAY
+    unread = "" if files else NOT_RECORDED if has_ended else STILL_ACTIVE
     return MeasuredMarkers(seq=seq, marks=shown, unread=unread, every=every, left_out=left_out)
 
 

@@ -172,7 +172,7 @@ def _of_forces(pieces: RecordedPieces, arm: str, topic: str, context: _Context) 
 
 
 def _of_stops(pieces: RecordedPieces, arm: str, topic: str, context: _Context) -> Iterator[MeasuredMarker]:
-    """Yield the moments at which an arm stopped by itself."""
+    """Yield the times at which an arm stopped by itself."""
     before = ""
     for at_s, status in _read(pieces, topic, ArmStatus):
         if status.mode in _STOPPED and before not in _STOPPED:

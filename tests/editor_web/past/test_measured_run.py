@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from editor_web.past.measured_marker import MeasuredMarker
-from editor_web.past.measured_run import NOT_RECORDED, UNDER_WAY, MeasuredRun
+from editor_web.past.measured_run import NOT_RECORDED, STILL_ACTIVE, MeasuredRun
 from editor_web.past.telemetry_markers import APART_S
 from engine.event import Event, GoalFinished, GoalSent
 from engine.messages import JointState, Pose, RobotDescription, Wrench
@@ -45,7 +45,7 @@ def marks_of(
     return MeasuredRun().markers(events, files, has_ended=True).marks
 
 
-def told(marks: Sequence[MeasuredMarker]) -> list[tuple[str, float, str, float | None, float | None]]:
+def numbers_of(marks: Sequence[MeasuredMarker]) -> list[tuple[str, float, str, float | None, float | None]]:
     """What markers say in numbers: kind, time, node, value, limit."""
     return [(mark.kind, mark.time_s, mark.path, mark.value, mark.limit) for mark in marks]
 
@@ -124,7 +124,7 @@ def test_the_peak_of_a_guarded_move_is_marked_with_the_force_that_was_asked_for(
         ]
     }
     events = events_of((1.0, 2.0, "left/move_until_contact", GUARDED, None))
-    assert told(marks_of(events, tmp_path, said)) == [("force", 1.6, "root/step_1", 20.0, 10.0)]
+    assert numbers_of(marks_of(events, tmp_path, said)) == [("force", 1.6, "root/step_1", 20.0, 10.0)]
 
 
 def test_each_excursion_above_the_threshold_of_the_reflex_is_marked_once(tmp_path: Path) -> None:
@@ -135,7 +135,7 @@ def test_each_excursion_above_the_threshold_of_the_reflex_is_marked_once(tmp_pat
         "left/wrench": [(1.0, force(19.0)), (2.0, force(21.0)), (2.1, force(50.0)), (again_s, force(22.0))],
     }
     marks = marks_of(events_of((0.0, 3.0, "left/joint_trap_vel", {}, None)), tmp_path, said)
-    assert told(marks) == [
+    assert numbers_of(marks) == [
         ("force", 2.1, "root/step_1", 50.0, 20.0),
         ("limit", 2.1, "root/step_1", 50.0, 20.0),
         ("force", again_s, "", 22.0, 20.0),
@@ -172,7 +172,7 @@ def test_what_is_not_recorded_is_said_and_not_made_up(tmp_path: Path) -> None:
     run = MeasuredRun()
     assert run.markers([], [file], has_ended=True).marks == ()
     assert run.markers([], [], has_ended=True).unread == NOT_RECORDED
-    assert run.markers([], [file], has_ended=False).unread == UNDER_WAY
+    assert run.markers([], [file], has_ended=False).unread == STILL_ACTIVE
 
 
 def test_markers_are_kept_until_the_run_or_its_recording_changes(tmp_path: Path) -> None:

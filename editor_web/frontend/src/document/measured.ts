@@ -12,7 +12,7 @@ export interface Mark extends TimelineMarker {
 /** All marks in order of time. */
 export function withMeasured(marks: readonly TimelineMarker[], measured: readonly MeasuredMarker[]): readonly Mark[] {
   if (measured.length === 0) return marks
-  const told = measured.map((each) => ({
+  const added = measured.map((each) => ({
     seq: each.seq,
     time_s: each.time_s,
     kind: each.kind,
@@ -20,7 +20,7 @@ export function withMeasured(marks: readonly TimelineMarker[], measured: readonl
     text: [each.text, valueWords(each)].filter(Boolean).join(': '),
     measured: each,
   }))
-  return [...marks, ...told].toSorted((a, b) => a.time_s - b.time_s || a.seq - b.seq)
+  return [...marks, ...added].toSorted((a, b) => a.time_s - b.time_s || a.seq - b.seq)
 }
 
 /** `12.5 N, limit 10 N`; empty where no number is known. */

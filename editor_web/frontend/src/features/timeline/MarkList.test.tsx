@@ -18,11 +18,11 @@ const CONTACT: MeasuredMarker = {
   text: 'left stopped at a contact after 20.0 mm',
 }
 const MARKS = withMeasured([{ seq: 1, time_s: 0.5, kind: 'goal', path: 'root/touch', text: 'left/move_until_contact' }], [CONTACT])
-const TOLD = { seq: 4, marks: [CONTACT], unread: '', every: 1, left_out: 0 }
+const MEASURED = { seq: 4, marks: [CONTACT], unread: '', every: 1, left_out: 0 }
 
 it('goes to the mark that is pressed, by keys', async () => {
   const go = vi.fn()
-  const user = show(<MarkList marks={MARKS} measured={TOLD} cursorS={0.6} onGo={go} />)
+  const user = show(<MarkList marks={MARKS} measured={MEASURED} cursorS={0.6} onGo={go} />)
   await user.click(screen.getByRole('button', { name: 'List of marks' }))
   expect(screen.getAllByRole('listitem')).toHaveLength(2)
   expect(screen.getByRole('button', { name: /^0.50 s · Goal/ })).toHaveAttribute('aria-current', 'step')
@@ -32,7 +32,7 @@ it('goes to the mark that is pressed, by keys', async () => {
 })
 
 it('says what is not marked, and why', async () => {
-  const measured = { ...TOLD, unread: 'there is no recording of this run', every: 3, left_out: 7 }
+  const measured = { ...MEASURED, unread: 'there is no recording of this run', every: 3, left_out: 7 }
   const user = show(<MarkList marks={[]} measured={measured} cursorS={0} onGo={vi.fn()} />)
   await user.click(screen.getByRole('button', { name: 'List of marks' }))
   expect(screen.getByText('Forces and limits of telemetry are missing: there is no recording of this run.')).toBeVisible()

@@ -69,7 +69,7 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
   const [axisPx, setAxisPx] = useState(0)
   const isGoingOn = isActive(run) && !subject?.isPast
   const nowS = useRunTime(course, isShown && isGoingOn)
-  const told = useMarks(subject, course?.marks, isShown, isGoingOn)
+  const all = useMarks(subject, course?.marks, isShown, isGoingOn)
   usePlayback(subject, nowS)
 
   const order = useMemo(() => (behavior.graph ? flatten(behavior.graph).map((each) => each.path) : []), [behavior])
@@ -81,7 +81,7 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
     const closed = new Set([...shut.filter((path) => !toggled.has(path)), ...[...toggled].filter((path) => !shut.includes(path))])
     return rowsOf(known, order, closed)
   }, [paths, order, toggled])
-  const marks = useMemo(() => told.marks.filter((mark) => kinds.has(mark.kind as MarkKind)), [told.marks, kinds])
+  const marks = useMemo(() => all.marks.filter((mark) => kinds.has(mark.kind as MarkKind)), [all.marks, kinds])
   const view = chosenView ?? wholeView(nowS)
   const spans = useDetail(subject, course, view, chosenView !== undefined)
 
@@ -164,7 +164,7 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
         cursorS={here.timeS}
         isPast={cursorS !== undefined}
         selected={node}
-        words={momentWords(here.timeS, nowS, told.marks)}
+        words={momentWords(here.timeS, nowS, all.marks)}
         onGo={goTo}
         onKey={onKey}
         onZoom={zoom}
@@ -191,7 +191,7 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
           onJump={jump}
           onZoom={zoom}
           onWhole={() => setView(undefined)}
-          list={{ marks, measured: told.measured, cursorS: here.timeS, onGo: goToMark }}
+          list={{ marks, measured: all.measured, cursorS: here.timeS, onGo: goToMark }}
           curves={curves && { isShown: hasCurves, onToggle: toggleCurves }}
         />
       }
