@@ -169,14 +169,26 @@ def test_curves_on_a_phone(browser: Browser, shop: Workshop) -> None:
         page.wait_for_function(f"() => ({PAINTED})() > 10")
 
 
-def test_recorded_curves_below_the_lanes_have_their_axis_and_their_cursor(
-    browser: Browser, shop: Workshop, plant: FakePlant
-) -> None:
-    """A press at one place means one time in both; what is drawn is saved as CSV and PNG."""
+@contextmanager
+def recorded_run(browser: Browser, shop: Workshop, plant: FakePlant) -> Generator[Page]:
+    """The page of a run that was recorded, and has ended."""
     run = shop.start(SHIFT_ID)
     shop.on_loop(lambda: plant.publish(2.0))
     shop.call(shop.session.stop(run, reason="it was long enough"))
-    with opened_page(browser, shop.running, f"/runs/{run}?layout=debug", size=LAPTOP) as page:
+    shop.call(shop.session.wait(run))
+    with opened_page(browser, shop.running, f"/runs/{run}?layout=debug", size=LAPTOP, quiet=False) as page:
+        yield page
+
+
+def test_recorded_curves_below_the_lanes_have_their_axis_and_their_cursor(
+    browser: Browser, tmp_path: Path, loopback: str, plant: FakePlant
+) -> None:
+    """A press at one place means one time in both; what is drawn is saved as CSV and PNG."""
+    with (
+        # With a 3D view, for a server records its runs for that.
+        Workshop(host=loopback, project=tmp_path, furnish=plant.furnish, cell_view=True) as shop,
+        recorded_run(browser, shop, plant) as page,
+    ):
         page.get_by_role("tab", name="Timeline").click()
         moment = page.get_by_role("slider", name="Moment of the run")
         page.get_by_role("button", name="Curves", exact=True).click()

@@ -1,5 +1,5 @@
 /** Recorded curves below the lanes of a timeline: one axis of time, one cursor. */
-import { Button, Flex, Group, Popover, Text } from '@mantine/core'
+import { Box, Button, Flex, Group, Popover, Text } from '@mantine/core'
 import { IconDownload, IconListTree, IconPhotoDown } from '@tabler/icons-react'
 import { useRef, useState } from 'react'
 import { useIsVisible } from '../../components/useIsVisible'
@@ -28,7 +28,7 @@ export function LaneCurves({ sources, axis }: LaneCurvesProps) {
   const { entries, curves, topics, problem } = plot
   const isEmpty = entries.length === 0
   return (
-    <div className={classes.plots} ref={area}>
+    <Box pos="absolute" inset={0} className={classes.plots} ref={area}>
       <Flex direction="column" h="100%">
         <Group gap="2xs" wrap="nowrap" px="xs" pt={2} role="toolbar" aria-label="Curves">
           <Popover opened={isChoosing} onChange={setChoosing} position="top-start" width={320} shadow="md" trapFocus returnFocus>
@@ -89,6 +89,6 @@ export function LaneCurves({ sources, axis }: LaneCurvesProps) {
           />
         )}
       </Flex>
-    </div>
+    </Box>
   )
 }
