@@ -118,7 +118,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
           <ComparedCurves {...aligned} />
         </Suspense>
       </Tabs.Panel>
-      <Tabs.Panel value="cell" className={styles.curves ?? ''}>
+      <Tabs.Panel value="cell">
         <Suspense fallback={null}>
           <ComparedCell {...aligned} />
         </Suspense>
