@@ -8,7 +8,7 @@ drag handles for the mouse.
 
 from editor_web.cell_view.handles import DragHandle, HandlePull
 from editor_web.cell_view.layers.marks import NO_MARKS, Marks
-from editor_web.cell_view.past_view import PastViewState
+from editor_web.cell_view.past_view import GhostRequest, PastViewState
 from editor_web.cell_view.rendering.layer_groups import LAYER_GROUPS, LayerGroup
 from editor_web.cell_view.rendering.viser_gateway import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, viser_page
 from editor_web.cell_view.view import CellView
@@ -21,6 +21,7 @@ __all__ = [
     "ROLE_HEADER",
     "CellView",
     "DragHandle",
+    "GhostRequest",
     "HandlePull",
     "LayerGroup",
     "Marks",

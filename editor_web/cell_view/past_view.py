@@ -9,10 +9,12 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import msgspec
 import viser
 
+from editor_web.cell_view.layers.run_ghost import RunGhost
 from editor_web.cell_view.layers.scene_layers import SceneLayers
 from editor_web.cell_view.recorded_scene import RecordedScene
 from editor_web.cell_view.rendering.canvas import PAST
@@ -28,14 +30,25 @@ _KEPT_PAGES = 200
 _log = logging.getLogger("flexcell.cell_view")
 
 
+class GhostRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """Another run whose arms are shown as ghosts, at a time of its own clock."""
+
+    run: Annotated[str, msgspec.Meta(min_length=1, max_length=500)]
+    time_s: float
+
+
 class PastViewState(msgspec.Struct, frozen=True, kw_only=True):
-    """What a page shows: a run at a time of its recording; or a `problem`, and the live cell."""
+    """What a page shows: a run at a time of its recording; or a `problem`, and the live cell.
+
+    `ghost_problem` says why the arms of the other run are not shown.
+    """
 
     run: str
     time_s: float
     from_s: float = 0.0
     until_s: float = 0.0
     problem: str = ""
+    ghost_problem: str = ""
 
 
 StateListener = Callable[[PastViewState], None]
@@ -45,6 +58,7 @@ StateListener = Callable[[PastViewState], None]
 class _ViewRequest:
     run: str
     time_s: float
+    ghost: GhostRequest | None
     report: StateListener
 
 
@@ -56,6 +70,9 @@ class _Client:
     page: str
     latest: LatestMessages = field(default_factory=LatestMessages)
     drawing: SceneLayers | None = None
+    other: LatestMessages = field(default_factory=LatestMessages)
+    ghost: RunGhost | None = None
+    """The arms of another run, and what they are drawn from."""
     wish: _ViewRequest | None = None
     due_s: float | None = None
 
@@ -84,11 +101,16 @@ class PastViews:
         server.on_client_disconnect(self._disconnected)
         self._thread.start()
 
-    def show(self, page: str, run: str, time_s: float, *, report: StateListener) -> None:
-        """Show a run at a time of its clock to a page; `report` is called, on another thread, when it is drawn."""
+    def show(
+        self, page: str, run: str, time_s: float, *, report: StateListener, ghost: GhostRequest | None = None
+    ) -> None:
+        """Show a run at a time of its clock to a page, and the arms of another one as ghosts.
+
+        `report` is called, on another thread, when it is drawn.
+        """
         with self._lock:
             self._wishes.pop(page, None)
-            self._wishes[page] = _ViewRequest(run=run, time_s=time_s, report=report)
+            self._wishes[page] = _ViewRequest(run=run, time_s=time_s, ghost=ghost, report=report)
             while len(self._wishes) > _KEPT_PAGES:
                 self._wishes.popitem(last=False)
         self._wake.set()
@@ -162,6 +184,7 @@ class PastViews:
             if is_another_run or client.drawing is None:
                 self._groups.clear_past(client.handle.client_id)
                 client.latest, client.drawing = LatestMessages(), SceneLayers(client.handle, under=PAST)
+                client.other, client.ghost = LatestMessages(), RunGhost(client.handle)
             run.show(client.latest, wish.time_s)
             client.wish = wish
         elif client.due_s is None:
@@ -170,12 +193,38 @@ class PastViews:
             # No animation: unlike in the live view, ghosts do not move in a loop.
             client.due_s = client.drawing.all(client.latest, frozenset())
         if is_new:
+            # Before the other run is opened, which may close this one.
+            from_s, until_s = self._runs[wish.run].span_s
+            ghost_problem = self._draw_ghost(client, wish, before)
             with self._lock:
                 # Only after drawing; meanwhile the page may have returned to the live view.
                 if client.page in self._wishes:
                     self._groups.show_past(self._groups.past | {client.page})
-            from_s, until_s = self._runs[wish.run].span_s
-            wish.report(PastViewState(run=wish.run, time_s=wish.time_s, from_s=from_s, until_s=until_s))
+            wish.report(
+                PastViewState(
+                    run=wish.run, time_s=wish.time_s, from_s=from_s, until_s=until_s, ghost_problem=ghost_problem
+                )
+            )
+
+    def _draw_ghost(self, client: _Client, wish: _ViewRequest, before: _ViewRequest | None) -> str:
+        """Draw the ghosts that are requested; return why they are not drawn, empty if they are."""
+        ghost, known = client.ghost, before.ghost if before is not None else None
+        if ghost is None:
+            return ""
+        if wish.ghost is None or known is None or known.run != wish.ghost.run:
+            ghost.clear()
+            client.other = LatestMessages()
+        if wish.ghost is None:
+            return ""
+        try:
+            other = self._opened(wish.ghost.run, is_another=known is None or known.run != wish.ghost.run)
+            other.show(client.other, wish.ghost.time_s)
+        except FlexcellError as error:
+            # The run itself is shown all the same.
+            ghost.clear()
+            return error.message
+        ghost.draw(client.other)
+        return ""
 
     def _opened(self, run: str, *, is_another: bool) -> RecordedScene:
         known = self._runs.pop(run, None)

@@ -18,7 +18,7 @@ from editor_web.cell_view.layers.path_view import interpolate_joints
 from editor_web.cell_view.layers.scene_layers import SceneLayers
 from editor_web.cell_view.page_cameras import PageCameras
 from editor_web.cell_view.page_ghosts import PageGhosts
-from editor_web.cell_view.past_view import PastViews, StateListener
+from editor_web.cell_view.past_view import GhostRequest, PastViews, StateListener
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import ClientLayerGroups, LayerGroup
 from editor_web.cell_view.rendering.transforms import poses_by_frame
@@ -89,10 +89,15 @@ class CellView:
         if self._groups is not None:
             self._groups.show(page, groups)
 
-    def show_past(self, page: str, run: str, time_s: float, *, report: StateListener) -> None:
-        """Show a run at a time of its clock to a page; `report` is called, on another thread, when it is drawn."""
+    def show_past(
+        self, page: str, run: str, time_s: float, *, report: StateListener, ghost: GhostRequest | None = None
+    ) -> None:
+        """Show a run at a time of its clock to a page, and the arms of another one as ghosts.
+
+        `report` is called, on another thread, when it is drawn.
+        """
         if self._past is not None:
-            self._past.show(page, run, time_s, report=report)
+            self._past.show(page, run, time_s, report=report, ghost=ghost)
 
     def show_present(self, page: str) -> None:
         """Show the live cell to a page again."""

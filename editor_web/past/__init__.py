@@ -5,8 +5,9 @@ states over time and, for a failed run, the failure.
 """
 
 from editor_web.past.failure import RunFailure
+from editor_web.past.measured_marker import MeasuredMarkers
 from editor_web.past.open_runs import OpenRun, OpenRunCache
 from editor_web.past.state_history import PastRunState
 from editor_web.past.timeline import Timeline
 
-__all__ = ["OpenRun", "OpenRunCache", "PastRunState", "RunFailure", "Timeline"]
+__all__ = ["MeasuredMarkers", "OpenRun", "OpenRunCache", "PastRunState", "RunFailure", "Timeline"]

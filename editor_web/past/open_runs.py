@@ -7,8 +7,11 @@ import time
 from collections import OrderedDict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from editor_web.past.failure import RunFailure, failure_of
+from editor_web.past.measured_marker import MeasuredMarkers
+from editor_web.past.measured_run import MeasuredRun
 from editor_web.past.state_history import PastRunState
 from editor_web.past.timeline import RunHistory, Timeline
 from editor_web.past.userdata_values import PastUserdata, UserdataCheckpoints
@@ -32,6 +35,7 @@ class OpenRun:
     userdata: UserdataCheckpoints
     archived: ArchivedRun | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
+    measured_run: MeasuredRun = field(default_factory=MeasuredRun)
 
     def follow(self, events: Iterable[Event]) -> None:
         """Apply further events."""
@@ -64,6 +68,18 @@ class OpenRun:
             states = self.course.states
             at = states.last_seq if seq is None else min(seq, states.last_seq)
             return self.userdata.at(states, at, watches=watches)
+
+    def measured(self, files: Sequence[Path]) -> MeasuredMarkers:
+        """Return its measured markers; those of telemetry come from its recordings when it has ended.
+
+        Raises:
+            RecordingError: a recording cannot be read.
+        """
+        with self.lock:
+            states = self.course.states
+            events, has_ended = states.events(1, states.last_seq), states.now.ended or self.archived is not None
+        # Without the lock: nobody waits for telemetry who does not ask for it.
+        return self.measured_run.markers(events, files, has_ended=has_ended)
 
     def failure(self, *, is_failed: bool) -> RunFailure | None:
         """Return its failure; None if it did not fail."""

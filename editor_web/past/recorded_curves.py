@@ -68,10 +68,18 @@ class RecordedPieces:
     def __exit__(self, *_: object) -> None:
         self._open.close()
 
+    @property
+    def topics(self) -> dict[str, str]:
+        """The topics, each with the type of its messages."""
+        return {topic: kind for piece in self._pieces for topic, kind in piece.topics.items()}
+
+    def count(self, topic: str) -> int:
+        """Return how many messages of a topic there are in the recording that has most."""
+        return max(piece.count(topic) for piece in self._pieces)
+
     def fields(self) -> RecordedFields:
         """Return what can be drawn, by topic."""
-        kinds = {topic: kind for piece in self._pieces for topic, kind in piece.topics.items()}
-        listed = ((topic, kind, signal_fields(self._last(topic))) for topic, kind in sorted(kinds.items()))
+        listed = ((topic, kind, signal_fields(self._last(topic))) for topic, kind in sorted(self.topics.items()))
         return RecordedFields(
             topics=tuple(
                 TopicFields(topic=topic, type=kind, fields=fields) for topic, kind, fields in listed if fields
@@ -90,7 +98,7 @@ class RecordedPieces:
         for topic, ids in by_topic.items():
             paths = [path_of(field.rpartition(":")[2]) for field in ids]
             tables = [_Cells(cells) for _ in ids]
-            for at_s, data in self._messages(topic, from_s, until_s):
+            for at_s, data in self.messages(topic, from_s, until_s):
                 message = msgspec.json.decode(data)
                 cell = min(cells - 1, int((at_s - from_s) / width_s)) if at_s >= from_s else -1
                 for path, table in zip(paths, tables, strict=True):
@@ -104,20 +112,23 @@ class RecordedPieces:
             columns=tuple(columns[field] for field in fields),
         )
 
+    def messages(
+        self, topic: str, from_s: float = -inf, until_s: float = inf, *, most: int = _MAX_MESSAGES
+    ) -> Iterator[tuple[float, bytes]]:
+        """Yield times and data of the messages of a topic, of each recording as `IndexedRecording.between` does."""
+        starts_s = [*(piece.span_s[0] for piece in self._pieces), inf]
+        for piece, (start_s, end_s) in zip(self._pieces, pairwise(starts_s), strict=True):
+            if start_s <= until_s and end_s > from_s:
+                # A resumed run went on before the end of its earlier recording.
+                until = min(until_s, end_s)
+                yield from piece.between(topic, max(from_s, start_s), until, most=most)
+
     def _last(self, topic: str) -> object:
         for piece in reversed(self._pieces):
             stored = piece.at(topic, piece.span_s[1])
             if stored is not None:
                 return msgspec.json.decode(stored.data)
         return None
-
-    def _messages(self, topic: str, from_s: float, until_s: float) -> Iterator[tuple[float, bytes]]:
-        starts_s = [*(piece.span_s[0] for piece in self._pieces), inf]
-        for piece, (start_s, end_s) in zip(self._pieces, pairwise(starts_s), strict=True):
-            if start_s <= until_s and end_s > from_s:
-                # A resumed run went on before the end of its earlier recording.
-                until = min(until_s, end_s)
-                yield from piece.between(topic, max(from_s, start_s), until, most=_MAX_MESSAGES)
 
 
 class _Cells:

@@ -9,13 +9,14 @@ from typing import Annotated
 
 import msgspec
 from fastapi import HTTPException, Query, Request, Response
+from msgspec.structs import replace
 
 from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunsBody, open_run_body, past_run_body
-from editor_web.past import OpenRun, OpenRunCache, PastRunState, RunFailure, Timeline
+from editor_web.past import MeasuredMarkers, OpenRun, OpenRunCache, PastRunState, RunFailure, Timeline
 from editor_web.past.run_search import RUN_KINDS, PastRunQuery, RunKind, search_runs
 from editor_web.past.userdata_values import PastUserdata
-from editor_web.routes.services import ServicesOf
+from editor_web.routes.services import Services, ServicesOf
 from editor_web.routes.wire_router import WireRouter, json_response
 from engine.archive import ArchivedRun, RecordingFile
 from engine.errors import FlexcellError, RecordingError
@@ -98,6 +99,12 @@ async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Re
     return await _of_run(request, run_id, _failure(is_failed))
 
 
+@router.get("/runs/{run_id}/measured", responses=_found(MeasuredMarkers))
+async def run_measured(run_id: str, services: ServicesOf, request: Request) -> Response:
+    """Return the measured markers of a run: contacts, grasps, forces and limits."""
+    return await _of_run(request, run_id, _measured(services, run_id))
+
+
 @router.get("/runs/{run_id}/userdata", responses=_found(PastUserdata))
 async def run_values(run_id: str, request: Request, seq: Seq = None, watches: Watches = "") -> Response:
     """Return the userdata of a run after an event."""
@@ -132,6 +139,12 @@ async def recording_failure(path: str, request: Request) -> Response:
     return await asyncio.to_thread(_of_recording, _open_runs(request), path, _failure(None))
 
 
+@router.get("/recordings/{path:path}/measured", responses=_found(MeasuredMarkers))
+async def recording_measured(path: str, services: ServicesOf, request: Request) -> Response:
+    """Return the measured markers of a recorded run."""
+    return await asyncio.to_thread(_of_recording, _open_runs(request), path, _measured(services, path))
+
+
 @router.get("/recordings/{path:path}/userdata", responses=_found(PastUserdata))
 async def recording_values(path: str, request: Request, seq: Seq = None, watches: Watches = "") -> Response:
     """Return the userdata of a recorded run after an event."""
@@ -163,6 +176,18 @@ def _timeline(from_s: float, until_s: float | None, after: int) -> RunReader:
 
 def _moment(time_s: float | None, seq: int | None, known: int | None, lines: int) -> RunReader:
     return lambda opened: opened.at(time_s=time_s, seq=seq, known=known, lines=lines) or Response(status_code=204)
+
+
+def _measured(services: Services, name: str) -> RunReader:
+    """Return a reader of the measured markers; a recording that cannot be read is told as if there were none."""
+
+    def read(opened: OpenRun) -> object:
+        try:
+            return opened.measured(services.backend.recording_files(name))
+        except RecordingError as error:
+            return replace(opened.measured(()), unread=error.message)
+
+    return read
 
 
 def _failure(is_failed: bool | None) -> RunReader:

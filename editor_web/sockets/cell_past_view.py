@@ -12,7 +12,7 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, WebSocket
 
-from editor_web.cell_view import CellView, PastViewState
+from editor_web.cell_view import CellView, GhostRequest, PastViewState
 from editor_web.routes.services import services_of
 from editor_web.sockets.page_socket import UNAVAILABLE, PageDisconnected, read_message, send_message
 
@@ -20,10 +20,11 @@ router = APIRouter()
 
 
 class PastViewRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """From the page: show this run at this time of its clock; null shows the live cell."""
+    """From the page: show this run at this time of its clock, with the arms of another; null shows the live cell."""
 
     run: Annotated[str, msgspec.Meta(min_length=1, max_length=500)]
     time_s: float | None
+    ghost: GhostRequest | None = None
 
 
 _decoder = msgspec.json.Decoder(PastViewRequest)
@@ -82,7 +83,7 @@ async def _receive(socket: WebSocket, view: CellView, page: str, latest: _Latest
         if request.time_s is None:
             view.show_present(page)
         else:
-            view.show_past(page, request.run, request.time_s, report=latest.put)
+            view.show_past(page, request.run, request.time_s, report=latest.put, ghost=request.ghost)
 
 
 async def _answer(socket: WebSocket, latest: _LatestState) -> None:

@@ -146,6 +146,16 @@ class IndexedRecording:
             row = bisect_right(track.times_ns, at_ns) - 1
             return self._stored(track, row) if row >= 0 else None
 
+    def count(self, topic: str) -> int:
+        """Return how many messages of a topic there are so far.
+
+        Raises:
+            RecordingError: it is damaged.
+        """
+        with damage_reported(self.path):
+            track = self._track(f"/{topic}")
+            return 0 if track is None else len(track.times_ns)
+
     def between(self, topic: str, from_s: float, until_s: float, *, most: int) -> Iterator[tuple[float, bytes]]:
         """Yield times and data of the messages of a topic in a time range, with the one that was the latest before it.
 

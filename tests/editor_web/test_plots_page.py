@@ -167,3 +167,49 @@ def test_curves_on_a_phone(browser: Browser, shop: Workshop) -> None:
         page.get_by_role("button", name="Choose").click()
         expect(page.get_by_label("Find a number")).to_have_count(0)
         page.wait_for_function(f"() => ({PAINTED})() > 10")
+
+
+@contextmanager
+def recorded_run(browser: Browser, shop: Workshop, plant: FakePlant) -> Generator[Page]:
+    """The page of a run that was recorded, and has ended."""
+    run = shop.start(SHIFT_ID)
+    shop.on_loop(lambda: plant.publish(2.0))
+    shop.call(shop.session.stop(run, reason="it was long enough"))
+    shop.call(shop.session.wait(run))
+    with opened_page(browser, shop.running, f"/runs/{run}?layout=debug", size=LAPTOP, quiet=False) as page:
+        yield page
+
+
+def test_recorded_curves_below_the_lanes_have_their_axis_and_their_cursor(
+    browser: Browser, tmp_path: Path, loopback: str, plant: FakePlant
+) -> None:
+    """A press at one place means one time in both; what is drawn is saved as CSV and PNG."""
+    with (
+        # With a 3D view, for a server records its runs for that.
+        Workshop(host=loopback, project=tmp_path, furnish=plant.furnish, cell_view=True) as shop,
+        recorded_run(browser, shop, plant) as page,
+    ):
+        page.get_by_role("tab", name="Timeline").click()
+        moment = page.get_by_role("slider", name="Moment of the run")
+        page.get_by_role("button", name="Curves", exact=True).click()
+        page.get_by_role("button", name="Choose curves").click()
+        choose_joints(page)
+        page.keyboard.press("Escape")
+        curves = page.get_by_role("slider", name="2 recorded curves")
+        lanes, below = moment.bounding_box(), curves.bounding_box()
+        assert lanes is not None
+        assert below is not None
+        middle = lanes["x"] + lanes["width"] / 2
+        page.mouse.click(middle, lanes["y"] + 5)
+        expect(moment).not_to_have_attribute("aria-valuenow", "0")
+        at_lanes = float(moment.get_attribute("aria-valuenow") or "nan")
+        expect(curves).to_have_attribute("aria-valuetext", f"{at_lanes:.2f} s")
+        moment.press("Home")
+        expect(curves).to_have_attribute("aria-valuetext", "0.00 s")
+        page.mouse.click(middle, below["y"] + below["height"] / 2)
+        expect(curves).to_have_attribute("aria-valuetext", f"{at_lanes:.2f} s")
+        require_accessible(page, "curves below lanes", part="[aria-label=Timeline]")
+        for kind in ("CSV", "PNG"):
+            with page.expect_download() as downloading:
+                page.get_by_role("toolbar", name="Curves").get_by_role("button", name=kind).click()
+            assert downloading.value.suggested_filename == f"recorded-curves.{kind.lower()}"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from editor_web.cell_view import CellView, PastViewState
+from editor_web.cell_view import CellView, GhostRequest, PastViewState
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.fake_sights import description, detections, occupancy, planned_path, planning_scene
@@ -31,11 +31,11 @@ class Past:
         self._loop = asyncio.get_running_loop()
         self._told: asyncio.Queue[PastViewState] = asyncio.Queue()
 
-    async def show(self, page: str, run: str, time_s: float) -> PastViewState:
+    async def show(self, page: str, run: str, time_s: float, *, ghost: GhostRequest | None = None) -> PastViewState:
         def report(state: PastViewState) -> None:
             self._loop.call_soon_threadsafe(self._told.put_nowait, state)
 
-        self.view.show_past(page, run, time_s, report=report)
+        self.view.show_past(page, run, time_s, report=report, ghost=ghost)
         async with asyncio.timeout(GUARD_S):
             while (state := await self._told.get()).time_s != time_s:
                 pass
@@ -143,6 +143,27 @@ async def test_detections_are_shown_at_the_instants_that_they_are_of(tmp_path: P
         for time_s, is_there in ((5.5, True), (3.0, False), (4.5, True), (8.0, False), (6.5, True)):
             await past.show("one", "run", time_s)
             await one.until(lambda is_there=is_there: one.is_seen(node) == is_there)
+
+
+async def test_the_arms_of_another_run_are_ghosts_at_their_own_time(tmp_path: Path) -> None:
+    """Only what moves: the table is the same. They go when nobody asks for them, and with the past."""
+    ghost, table = "/past/ghost/left.fore", "/past/ghost/world"
+    runs = {"run": recorded_messages(), "other": recorded_messages()}
+    async with opened(tmp_path, runs) as (_, past), viser_page(past.view, "one") as one:
+        state = await past.show("one", "run", 2.0, ghost=GhostRequest(run="other", time_s=5.0))
+        assert (state.problem, state.ghost_problem) == ("", "")
+        await one.until(lambda: stands(one, PAST_ARM, 2.0) and stands(one, ghost, 5.0) and has_body(one, ghost))
+        await past.show("one", "run", 2.1, ghost=GhostRequest(run="other", time_s=5.1))
+        await one.until(lambda: stands(one, PAST_ARM, 2.1) and stands(one, ghost, 5.1))
+        assert not one.is_seen(table)
+        await past.show("one", "run", 2.2)
+        await one.until(lambda: stands(one, PAST_ARM, 2.2) and not one.is_seen(ghost))
+        missing = await past.show("one", "run", 2.3, ghost=GhostRequest(run="none", time_s=1.0))
+        assert (missing.problem, missing.ghost_problem) == ("", "this run has no recording")
+        await past.show("one", "run", 2.4, ghost=GhostRequest(run="other", time_s=6.0))
+        await one.until(lambda: one.is_seen(ghost) and stands(one, ghost, 6.0))
+        past.view.show_present("one")
+        await one.until(lambda: not one.is_seen(ghost))
 
 
 async def test_a_page_hides_in_the_past_what_it_hides_in_the_present(tmp_path: Path) -> None:

@@ -82,7 +82,14 @@ async def state_at(socket: websockets.asyncio.client.ClientConnection, time_s: f
 async def test_a_moment_is_shown_and_reported_and_null_shows_the_present(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served, shown(served) as view, past_of(served) as past:
         await ask(past, 4.0)
-        assert await state_at(past, 4.0) == {"run": "run", "time_s": 4.0, "from_s": 0.0, "until_s": 10.0, "problem": ""}
+        assert await state_at(past, 4.0) == {
+            "run": "run",
+            "time_s": 4.0,
+            "from_s": 0.0,
+            "until_s": 10.0,
+            "problem": "",
+            "ghost_problem": "",
+        }
         await view.until(lambda: view.is_seen("/past/cell/left.fore") and not view.is_seen("/cell/left.fore"))
         await ask(past, None)
         await view.until(lambda: view.is_seen("/cell/left.fore") and not view.is_seen("/past/cell/left.fore"))

@@ -1,7 +1,7 @@
 /** Past moments in the 3D view of this page: asked for over a connection of their own, which ends with the past. */
 import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
-import type { PastViewRequest, PastViewState } from './types'
+import type { GhostRequest, PastViewRequest, PastViewState } from './types'
 import { pageStore } from './pageStore'
 
 interface PastStore {
@@ -15,8 +15,8 @@ export const usePast = pageStore<PastStore>(() => ({ requested: null, shown: nul
 
 const AGAIN_MS = 1000
 
-/** Let the 3D view of this page show a run as it was at a time of it; null lets it show the present again. */
-export function showCellAt(run: string, timeS: number | null): void {
+/** Let the 3D view of this page show a run as it was at a time of it, and the arms of another; null: the present again. */
+export function showCellAt(run: string, timeS: number | null, ghost: GhostRequest | null = null): void {
   const { requested, shown } = usePast.getState()
   if (timeS === null) {
     connection.getState().close()
@@ -24,7 +24,7 @@ export function showCellAt(run: string, timeS: number | null): void {
     return
   }
   const isSameRun = requested?.run === run
-  usePast.setState({ requested: { run, time_s: timeS }, shown: isSameRun ? shown : null })
+  usePast.setState({ requested: { run, time_s: timeS, ghost }, shown: isSameRun ? shown : null })
   // A run that was not recorded has no other moment either.
   if (isSameRun && shown?.problem) return
   connection.getState().ask()

@@ -23,6 +23,7 @@ export const queryKeys = {
   trend: (behavior: string, last: number) => ['trend', behavior, last] as const,
   lastGood: (run: string) => ['last good', run] as const,
   failure: ({ address }: Subject) => ['failure', address] as const,
+  measured: ({ address }: Subject, hasEnded: boolean) => ['measured', address, hasEnded] as const,
   timelinePart: ({ address }: Subject, fromS: number, untilS: number, seq: number) =>
     ['timeline part', address, fromS, untilS, seq] as const,
   userdata: ({ address }: Subject, seq: number, watches: readonly Watch[]) => ['userdata', address, seq, watches] as const,

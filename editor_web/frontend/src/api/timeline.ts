@@ -9,7 +9,7 @@ import { call, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
 import { queryKeys } from './queryKeys'
-import type { OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
+import type { MeasuredMarkers, OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
 import { pageStore } from './pageStore'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
@@ -50,6 +50,7 @@ export const pastApi = {
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
   userdata: (subject: Subject, seq: number, watches: readonly Watch[]) =>
     call<PastUserdata>(`${subject.address}/userdata?${query({ seq, watches: watches.length > 0 ? JSON.stringify(watches) : '' })}`),
+  measured: (subject: Subject) => call<MeasuredMarkers>(`${subject.address}/measured`),
   failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
 }
 
@@ -71,6 +72,8 @@ export const pastQueries = {
       queryKey: queryKeys.userdata(subject, seq, watches),
       queryFn: () => pastApi.userdata(subject, seq, watches),
     }),
+  measured: (subject: Subject, hasEnded: boolean) =>
+    queryOptions({ queryKey: queryKeys.measured(subject, hasEnded), queryFn: () => pastApi.measured(subject) }),
   failure: (subject: Subject) => queryOptions({ queryKey: queryKeys.failure(subject), queryFn: () => pastApi.failure(subject) }),
 }
 

@@ -968,6 +968,12 @@ export interface GateWait {
   readonly required: string
 }
 
+/** Another run whose arms are shown as ghosts, at a time of its own clock. */
+export interface GhostRequest {
+  readonly run: string
+  readonly time_s: number
+}
+
 /** Last line: the end of the goal; the device is at rest. */
 export interface GoalEndLine {
   readonly k: "end"
@@ -1384,6 +1390,28 @@ export interface MeasureSpread {
   readonly failures: Quantiles | null
 }
 
+/** What was measured at a time of the run's clock, after event `seq`. `path` is the node whose goal was active at the device then, empty for none. `device` is its address: `left`, `left/gripper`. `value` and `limit`, what was asked for or is allowed, are in `unit`; None where there is none. */
+export interface MeasuredMarker {
+  readonly kind: "contact" | "force" | "grasp" | "limit"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly device: string
+  readonly value: number | null
+  readonly unit: string
+  readonly limit: number | null
+  readonly text: string
+}
+
+/** The measured markers of a run up to event `seq`, in order of time. `unread` says why the telemetry is not in them; it is empty where it is. `every` is n where only every n-th message of a topic was read, for there are too many; peaks between those are missing. `left_out` counts dropped markers. */
+export interface MeasuredMarkers {
+  readonly seq: number
+  readonly marks: readonly MeasuredMarker[]
+  readonly unread: string
+  readonly every: number
+  readonly left_out: number
+}
+
 /** A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit. */
 export interface MeasuredValue {
   readonly quantity: string
@@ -1740,19 +1768,21 @@ export interface PastUserdata {
   readonly problem: string
 }
 
-/** From the page: show this run at this time of its clock; null shows the live cell. */
+/** From the page: show this run at this time of its clock, with the arms of another; null shows the live cell. */
 export interface PastViewRequest {
   readonly run: string
   readonly time_s: number | null
+  readonly ghost?: GhostRequest | null
 }
 
-/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. */
+/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. `ghost_problem` says why the arms of the other run are not shown. */
 export interface PastViewState {
   readonly run: string
   readonly time_s: number
   readonly from_s: number
   readonly until_s: number
   readonly problem: string
+  readonly ghost_problem: string
 }
 
 /** Insert nodes, in the form that `copy` returns, into a container. */

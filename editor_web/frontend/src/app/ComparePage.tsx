@@ -13,7 +13,7 @@ import { Splitter } from '../components/Splitter'
 import { TabCount } from '../components/TabCount'
 import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
-import { dataOf, indexAt, placeOf, type Side } from '../document/comparison'
+import { dataOf, durationOf, indexAt, placeOf, type Side } from '../document/comparison'
 import { ComparedRun } from '../features/comparison/ComparedRun'
 import { FirstDivergence } from '../features/comparison/FirstDivergence'
 import { NodeDurations } from '../features/comparison/NodeDurations'
@@ -22,7 +22,11 @@ import { VisitDetails } from '../features/comparison/VisitDetails'
 import { VisitTable } from '../features/comparison/VisitTable'
 import { compareHref, LAST_GOOD, PAST_HREF, recordedHref, replaceWith } from './route'
 
+const ComparedCell = lazyView(async () => (await import('./ComparedCell')).ComparedCell)
 const ComparedCurves = lazyView(async () => (await import('./ComparedCurves')).ComparedCurves)
+
+/** A visit of no length still has something to see around it. */
+const SHORTEST_S = 0.5
 
 export interface ComparePageProps {
   /** Ids of runs, or paths of recordings; the left one may be the last good run. */
@@ -59,6 +63,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
   const [selected, setSelected] = useState<number | undefined>(() => indexAt(found.visits, placeOfAddress()) ?? found.divergence?.index)
   const visit = selected === undefined ? undefined : found.visits[selected]
   const place = visit && placeOf(visit)
+  const [cursorS, setCursor] = useState<number>()
 
   useEffect(() => {
     history.replaceState(null, '', compareHref(left, right, place))
@@ -71,6 +76,17 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
 
   const hrefAt = (side: Side, timeS?: number, path?: string) => recordedHref(side === 'left' ? left : right, timeS, path)
   const swapped = compareHref(right, left)
+  const lengths = visit ? [durationOf(visit.left), durationOf(visit.right)] : [found.left.duration_s, found.right.duration_s]
+  const durationS = Math.max(SHORTEST_S, ...lengths.map((length) => length ?? 0))
+  // Curves and 3D view show the same moment.
+  const aligned = {
+    left,
+    right,
+    visit,
+    durationS,
+    cursorS: cursorS === undefined ? undefined : Math.min(cursorS, durationS),
+    onGo: setCursor,
+  }
   const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
   const details = (
     <Tabs defaultValue="visit" keepMounted={false}>
@@ -82,6 +98,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
           {found.settings.length + found.documents.length > 0 && <TabCount count={found.settings.length + found.documents.length} />}
         </Tabs.Tab>
         <Tabs.Tab value="curves">Curves</Tabs.Tab>
+        <Tabs.Tab value="cell">3D</Tabs.Tab>
       </Tabs.List>
       <Tabs.Panel value="visit">
         {visit && selected !== undefined ? (
@@ -98,7 +115,12 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
       </Tabs.Panel>
       <Tabs.Panel value="curves">
         <Suspense fallback={null}>
-          <ComparedCurves left={left} right={right} found={found} visit={visit} />
+          <ComparedCurves {...aligned} />
+        </Suspense>
+      </Tabs.Panel>
+      <Tabs.Panel value="cell">
+        <Suspense fallback={null}>
+          <ComparedCell {...aligned} />
         </Suspense>
       </Tabs.Panel>
     </Tabs>

@@ -32,7 +32,7 @@ type TabName = 'Log' | 'Timeline' | 'Failure' | 'Data' | 'Plots' | 'Bus'
 
 const DOCK_TABS: readonly DockTab[] = [
   { name: 'Log', Body: () => <EventLog /> },
-  later('Timeline', async () => (await import('../features/timeline/Timeline')).Timeline),
+  later('Timeline', async () => (await import('./RunTimeline')).RunTimeline),
   later('Failure', async () => (await import('../features/timeline/FailureView')).FailureView),
   later('Data', async () => (await import('../features/data/Data')).Data),
   later('Plots', async () => (await import('./RunPlots')).RunPlots),

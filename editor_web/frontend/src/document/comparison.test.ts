@@ -1,7 +1,7 @@
 /** What differs of a visit, and how the address names it. */
 import { expect, it } from 'vitest'
 import type { AlignedVisit, Visit } from '../api/types'
-import { differenceS, durationOf, endWords, indexAt, isDifferent, placeOf, signed } from './comparison'
+import { alignedMoment, differenceS, durationOf, endWords, indexAt, isDifferent, placeOf, signed } from './comparison'
 
 function visit(told: Partial<Visit> = {}): Visit {
   return { path: 'root/a', start_s: 1, end_s: 3, status: 'done', outcome: 'ok', visit: 1, seq: 2, end_seq: 5, count: 1, cause: '', ...told }
@@ -39,4 +39,12 @@ it('names each visit of a comparison in the address, and finds it again', () => 
   expect(visits.map(placeOf)).toEqual(['root/a@1', 'root/a@2', 'root/a@r2', 'root/a@r3'])
   expect(visits.map((each) => indexAt(visits, placeOf(each)))).toEqual([0, 1, 2, 3])
   expect([indexAt(visits, ''), indexAt(visits, 'root/b@1')]).toEqual([undefined, undefined])
+})
+
+it('shows both runs at the same time since the start of a visit', () => {
+  const aligned = { path: 'root/a', left: { start_s: 3 }, right: { start_s: 5 } } as AlignedVisit
+  expect(alignedMoment('l', 'r', aligned, 0.5)).toEqual({ solid: ['l', 3.5], ghost: ['r', 5.5] })
+  expect(alignedMoment('l', 'r', undefined, 0.5)).toEqual({ solid: ['l', 0.5], ghost: ['r', 0.5] })
+  expect(alignedMoment('l', 'r', { ...aligned, right: null }, 0)).toEqual({ solid: ['l', 3], ghost: undefined })
+  expect(alignedMoment('l', 'r', { ...aligned, left: null }, 0)).toEqual({ solid: ['r', 5], ghost: undefined })
 })

@@ -47,3 +47,17 @@ export function indexAt(visits: readonly AlignedVisit[], place: string): number 
 export function dataOf(data: readonly DataDifference[], index: number): readonly DataDifference[] {
   return data.filter((each) => each.index === index)
 }
+
+/** Where two runs are at the same time since the start of a visit: the left one solid, the right one as a ghost. */
+export function alignedMoment(
+  left: string,
+  right: string,
+  visit: AlignedVisit | undefined,
+  offsetS: number,
+): { readonly solid: readonly [run: string, timeS: number]; readonly ghost: readonly [run: string, timeS: number] | undefined } {
+  const leftS = visit ? visit.left?.start_s : 0
+  const rightS = visit ? visit.right?.start_s : 0
+  // A visit that only the right run has is shown of that one.
+  if (leftS === undefined) return { solid: [right, (rightS ?? 0) + offsetS], ghost: undefined }
+  return { solid: [left, leftS + offsetS], ghost: rightS === undefined ? undefined : [right, rightS + offsetS] }
+}

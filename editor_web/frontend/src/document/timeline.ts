@@ -1,5 +1,5 @@
 /** The timeline of a run: its rows, what part of the time is seen, and going from mark to mark. Pure. */
-import type { ActivationInterval, TimelineMarker, Timeline } from '../api/types'
+import type { ActivationInterval, MeasuredMarker, TimelineMarker, Timeline } from '../api/types'
 import { depthOf, nameOfPath, parentPath, pathsTo } from './path'
 
 /** Everything that is known of one run up to event `seq`. */
@@ -68,6 +68,21 @@ function ancestorsOf(path: string): readonly string[] {
 export interface View {
   readonly fromS: number
   readonly untilS: number
+}
+
+/** The axis of time that lanes and curves have in common, with its one cursor. */
+export interface SharedAxis {
+  readonly view: View
+  /** From 0 to here. */
+  readonly durationS: number
+  /** Where it begins, from the left edge; what stands before it are names and numbers. */
+  readonly leftPx: number
+  readonly cursorS: number
+  /** Does the run still go on? Its end is then later at every look. */
+  readonly isGoingOn: boolean
+  readonly onGo: (timeS: number) => void
+  readonly onZoom: (factor: number, aroundS: number) => void
+  readonly onPan: (byS: number) => void
 }
 
 const SHORTEST_S = 0.005
@@ -148,15 +163,33 @@ export function spanAt(spans: readonly ActivationInterval[], timeS: number, near
   return after && after.start_s - nearS <= timeS ? after : undefined
 }
 
-export type MarkKind = 'failure' | 'command' | 'gate' | 'goal' | 'change' | 'fault' | 'warning'
+/** What was measured: of these the server tells apart from the events. */
+export type MeasuredKind = MeasuredMarker['kind']
+export type MarkKind = 'failure' | 'command' | 'gate' | 'goal' | 'change' | 'fault' | 'warning' | MeasuredKind
 
-export const MARK_KINDS: readonly MarkKind[] = ['failure', 'warning', 'fault', 'command', 'gate', 'change', 'goal']
+export const MARK_KINDS: readonly MarkKind[] = [
+  'failure',
+  'warning',
+  'fault',
+  'contact',
+  'grasp',
+  'force',
+  'limit',
+  'command',
+  'gate',
+  'change',
+  'goal',
+]
 
 /** In words, for menus. */
 export const MARK_WORDS: Readonly<Record<MarkKind, string>> = {
   failure: 'Failures',
   warning: 'Warnings',
   fault: 'Injected faults',
+  contact: 'Contacts',
+  grasp: 'Grasps',
+  force: 'Forces',
+  limit: 'Limits',
   command: 'Operator',
   gate: 'Waits and questions',
   change: 'Changed behavior',
@@ -169,9 +202,9 @@ export interface Place {
   readonly seq: number
 }
 
-/** The mark after (1) or before (-1) a place. */
-export function neighbor(marks: readonly TimelineMarker[], place: Place, direction: 1 | -1): TimelineMarker | undefined {
-  const isBeyond = (mark: TimelineMarker) => (direction > 0 ? mark.seq > place.seq : mark.seq < place.seq)
+/** The mark after (1) or before (-1) a place; what was measured lies between events, which have numbers. */
+export function neighbor<M extends TimelineMarker>(marks: readonly M[], place: Place, direction: 1 | -1): M | undefined {
+  const isBeyond = (mark: M) => ((mark.time_s - place.timeS) * direction || (mark.seq - place.seq) * direction) > 0
   return direction > 0 ? marks.find(isBeyond) : marks.findLast(isBeyond)
 }
 

@@ -42,7 +42,7 @@ it('puts no part back while a run is active', () => {
 })
 
 it('says which moment the view shows, that nothing was recorded later, or why it shows the present', () => {
-  const drawn: PastViewState = { run: 'r1', time_s: 2, from_s: 0, until_s: 9, problem: '' }
+  const drawn: PastViewState = { run: 'r1', time_s: 2, from_s: 0, until_s: 9, problem: '', ghost_problem: '' }
   const at = (told: Partial<PastViewState>) =>
     act(() => usePast.setState({ requested: { run: 'r1', time_s: 2 }, shown: { ...drawn, ...told } }))
   const container = document.body

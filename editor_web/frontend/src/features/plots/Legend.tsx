@@ -17,7 +17,7 @@ interface LegendProps {
   readonly curves: Curves
   readonly atS: number | undefined
   readonly endS: number | undefined
-  readonly onRemove?: (id: string) => void
+  readonly onRemove?: ((id: string) => void) | undefined
 }
 
 export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
@@ -30,13 +30,7 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
         return (
           <li key={entry.id}>
             <Group gap="3xs" wrap="nowrap" miw={0}>
-              <Box
-                component="span"
-                flex="none"
-                w={16}
-                style={{ borderTop: `3px ${entry.color >= 8 ? 'dashed' : 'solid'} var(--curve-${entry.color % 8})` }}
-                aria-hidden
-              />
+              <Stroke color={entry.color} />
               <Text span inherit truncate flex={1} title={`${entry.topic} ${entry.label}`}>
                 {entry.label}{' '}
                 <Text span inherit c="dimmed" className={classes.topic ?? ''}>
@@ -62,8 +56,14 @@ export function Legend({ entries, curves, atS, endS, onRemove }: LegendProps) {
   )
 }
 
+/** How a curve looks. */
+export function Stroke({ color }: { readonly color: number }) {
+  const style = { borderTop: `3px ${color >= 8 ? 'dashed' : 'solid'} var(--curve-${color % 8})` }
+  return <Box component="span" flex="none" w={16} style={style} aria-hidden />
+}
+
 /** Four digits; what is as good as nothing is 0. */
-function valueText(value: number): string {
+export function valueText(value: number): string {
   if (Number.isNaN(value)) return '–'
   return Math.abs(value) < 1e-9 ? '0' : numeral(Number(value.toPrecision(4)))
 }

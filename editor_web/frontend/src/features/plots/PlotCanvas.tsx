@@ -1,23 +1,23 @@
 /** The canvas of the curves: drawn when something has come, zoomed by wheel or keys, panned by dragging. */
 import { tokensOf } from '../../components/tokens'
 import { useElementSize, useMergedRef } from '@mantine/hooks'
-import { useEffect, useRef, type KeyboardEvent, type PointerEvent } from 'react'
+import { useEffect, useRef, type KeyboardEvent, type PointerEvent, type RefObject } from 'react'
 import { actOn, useWheelZoom } from './canvasInput'
 import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve, type Look } from './draw'
 import type { Plot } from './usePlot'
 import classes from './plots.module.css'
 
 interface PlotCanvasProps {
+  readonly canvas: RefObject<HTMLCanvasElement | null>
   readonly plot: Plot
   readonly curves: readonly Curve[]
   readonly atS: number | undefined
   readonly onPoint: (atS: number | undefined) => void
 }
 
-export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
+export function PlotCanvas({ canvas, plot, curves, atS, onPoint }: PlotCanvasProps) {
   const { ref: sizeRef, width, height } = useElementSize<HTMLDivElement>()
   const area = useRef<HTMLDivElement>(null)
-  const canvas = useRef<HTMLCanvasElement>(null)
   const drag = useRef<{ readonly x: number; readonly endS: number }>(undefined)
   const both = useMergedRef(sizeRef, area)
   const samples = plot.curves
@@ -30,7 +30,7 @@ export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
       if (pen && area.current) draw(pen, { width, height }, samples, curves, { endS, spanS, atS }, lookOf(area.current))
     })
     return () => cancelAnimationFrame(frame)
-  }, [width, height, samples, curves, endS, spanS, atS, plot.revision])
+  }, [canvas, width, height, samples, curves, endS, spanS, atS, plot.revision])
 
   useWheelZoom(area, (factor) => plot.zoom(spanS * factor))
 

@@ -1,6 +1,6 @@
 /** Curves of chosen numbers of topics: joints, forces, widths, over the last two minutes. */
 import { Box, Button, Group, SegmentedControl, Text } from '@mantine/core'
-import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
+import { IconChartLine, IconDownload, IconListTree, IconPhotoDown, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
 import { busQueries } from '../../api/bus'
 import { useAnswer } from '../../api/queryClient'
@@ -9,7 +9,7 @@ import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
 import { csvOf } from '../../document/curves'
 import { wallTime } from '../../document/time'
-import { saveBlob } from './exporting'
+import { headingsOf, saveBlob, savePicture } from './exporting'
 import { coloured, describe } from './fields'
 import { FieldChooser } from './FieldChooser'
 import { Legend } from './Legend'
@@ -34,13 +34,9 @@ export function Plots() {
     return plot.chosen.map((id) => ({ id, color: colors.current.get(id) ?? 0, ...describe(id, topics ?? NONE) }))
   }, [plot.chosen, topics])
 
-  function save(): void {
-    const headings = Object.fromEntries(entries.map(({ id, topic, label, unit }) => [id, `${topic} ${label}${unit && ` (${unit})`}`]))
-    saveBlob(
-      new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }),
-      `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`,
-    )
-  }
+  const stamp = () => new Date().toISOString().slice(0, 19).replaceAll(':', '')
+  const save = () => saveBlob(new Blob([csvOf(plot.curves, headingsOf(entries))], { type: 'text/csv' }), `curves-${stamp()}.csv`)
+  const canvas = useRef<HTMLCanvasElement>(null)
 
   const isPaused = plot.pausedS !== undefined
   const tools = (
@@ -83,6 +79,15 @@ export function Plots() {
       >
         CSV
       </Button>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={entries.length === 0}
+        leftSection={<IconPhotoDown size={14} aria-hidden />}
+        onClick={() => canvas.current && savePicture(canvas.current, entries, `curves-${stamp()}.png`)}
+      >
+        PNG
+      </Button>
     </Group>
   )
 
@@ -105,7 +110,7 @@ export function Plots() {
           </Empty>
         ) : (
           <div className={classes.main}>
-            <PlotCanvas plot={plot} curves={entries} atS={atS} onPoint={setAtS} />
+            <PlotCanvas canvas={canvas} plot={plot} curves={entries} atS={atS} onPoint={setAtS} />
             <Legend
               entries={entries}
               curves={plot.curves}

@@ -14,18 +14,21 @@ interface RecordedCanvasProps {
   readonly shown: readonly Curve[]
   readonly view: View
   readonly cursorS: number | undefined
+  /** Where the axis of time begins, where something else has the same axis. */
+  readonly leftPx?: number
   readonly onGo: (timeS: number) => void
   readonly onZoom: (factor: number, aroundS: number) => void
   readonly onPan: (byS: number) => void
   readonly onWidth: (width: number) => void
 }
 
-export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZoom, onPan, onWidth }: RecordedCanvasProps) {
+export function RecordedCanvas(props: RecordedCanvasProps) {
+  const { canvas, curves, shown, view, cursorS, leftPx = LEFT_PX, onGo, onZoom, onPan, onWidth } = props
   const { ref: sizeRef, width, height } = useElementSize<HTMLDivElement>()
   const area = useRef<HTMLDivElement>(null)
   const both = useMergedRef(sizeRef, area)
   const grip = useRef<number>(undefined)
-  const seen = { endS: view.untilS, spanS: view.untilS - view.fromS }
+  const seen = { endS: view.untilS, spanS: view.untilS - view.fromS, leftPx }
   const { endS, spanS } = seen
 
   useEffect(() => onWidth(width), [width, onWidth])
@@ -33,10 +36,10 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
     const frame = requestAnimationFrame(() => {
       const pen = canvas.current && sized(canvas.current, width, height)
       if (pen && area.current)
-        draw(pen, { width, height }, curves, shown, { endS, spanS, atS: cursorS, isRecorded: true }, lookOf(area.current))
+        draw(pen, { width, height }, curves, shown, { endS, spanS, atS: cursorS, isRecorded: true, leftPx }, lookOf(area.current))
     })
     return () => cancelAnimationFrame(frame)
-  }, [canvas, width, height, curves, shown, endS, spanS, cursorS])
+  }, [canvas, width, height, curves, shown, endS, spanS, cursorS, leftPx])
 
   useWheelZoom(area, (factor, x) => onZoom(factor, timeAt(x, width, seen)))
 
@@ -53,7 +56,7 @@ export function RecordedCanvas({ canvas, curves, shown, view, cursorS, onGo, onZ
   function move(event: PointerEvent<HTMLDivElement>): void {
     if (grip.current === undefined) return
     const x = at(event)
-    if (event.shiftKey) onPan(((grip.current - x) / (width - LEFT_PX - RIGHT_PX)) * spanS)
+    if (event.shiftKey) onPan(((grip.current - x) / (width - leftPx - RIGHT_PX)) * spanS)
     else onGo(timeAt(x, width, seen))
     grip.current = x
   }

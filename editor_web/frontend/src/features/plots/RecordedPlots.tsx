@@ -1,20 +1,18 @@
 /** Curves of a recorded run, or of two over one another, with the cursor that the whole page shares. */
 import { Box, Button, Group, Text } from '@mantine/core'
 import { IconArrowsMaximize, IconChartLine, IconDownload, IconListTree, IconPhotoDown } from '@tabler/icons-react'
-import { useCallback, useMemo, useRef, useState } from 'react'
+import { useRef, useState } from 'react'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
-import { csvOf } from '../../document/curves'
 import { panned, wholeView, zoomed, type View } from '../../document/timeline'
-import { saveBlob, savePicture } from './exporting'
-import { coloured, describe } from './fields'
+import { savePicture } from './exporting'
 import { FieldChooser } from './FieldChooser'
-import { keptFields, keepFields } from './keptFields'
+import { keptFields } from './keptFields'
 import { Legend } from './Legend'
-import { curveId, type RecordedSource } from './recorded'
+import type { RecordedSource } from './recorded'
 import { RecordedCanvas } from './RecordedCanvas'
-import { useRecordedCurves, useRecordedFields } from './useRecordedCurves'
+import { useRecordedPlot } from './useRecordedPlot'
 import classes from './plots.module.css'
 
 export interface RecordedPlotsProps {
@@ -25,52 +23,20 @@ export interface RecordedPlotsProps {
   readonly onGo: (timeS: number) => void
 }
 
-/** Colours of the second source are those of the first, dashed. */
-const DASHED = 8
-
 export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlotsProps) {
   const area = useRef<HTMLDivElement>(null)
   const canvas = useRef<HTMLCanvasElement>(null)
   const isShown = useIsVisible(area)
-  const { topics, problem } = useRecordedFields(sources, isShown)
-  const [chosen, setChosen] = useState(keptFields)
-  const [isChoosing, setChoosing] = useState(chosen.length === 0)
   const [part, setPart] = useState<View>()
   const [width, setWidth] = useState(0)
   const view = part ?? wholeView(durationS)
-  const known = useMemo(
-    () => chosen.filter((id) => topics?.some((topic) => topic.fields.some((field) => `${topic.topic}:${field.path}` === id))),
-    [chosen, topics],
-  )
-  const { curves, problem: lost } = useRecordedCurves(sources, isShown ? known : [], view, Math.min(1000, Math.round(width / 2)))
-  const entries = useMemo(() => {
-    const colors = coloured(new Map(), known)
-    return known.flatMap((field) =>
-      sources.map((source, index) => {
-        const { topic, label, unit } = describe(field, topics ?? [])
-        return {
-          id: curveId(source, field),
-          topic,
-          label: source.label ? `${source.label} ${label}` : label,
-          unit,
-          color: ((colors.get(field) ?? 0) % DASHED) + (index > 0 ? DASHED : 0),
-        }
-      }),
-    )
-  }, [known, sources, topics])
-  const choose = useCallback((fields: readonly string[]) => {
-    setChosen(fields)
-    keepFields(fields)
-  }, [])
+  const plot = useRecordedPlot(sources, isShown, view, width)
+  const { topics, problem, entries, curves } = plot
+  const [isChoosing, setChoosing] = useState(() => keptFields().length === 0)
 
   function zoom(factor: number, aroundS: number): void {
     const next = Number.isFinite(factor) ? zoomed(view, factor, aroundS, durationS) : wholeView(durationS)
     setPart(next.untilS - next.fromS >= durationS ? undefined : next)
-  }
-
-  function saveCsv(): void {
-    const headings = Object.fromEntries(entries.map(({ id, topic, label, unit }) => [id, `${topic} ${label}${unit && ` (${unit})`}`]))
-    saveBlob(new Blob([csvOf(curves, headings)], { type: 'text/csv' }), 'recorded-curves.csv')
   }
 
   const isEmpty = entries.length === 0
@@ -97,7 +63,13 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
       >
         Whole
       </Button>
-      <Button size="compact-xs" variant="default" disabled={isEmpty} leftSection={<IconDownload size={14} aria-hidden />} onClick={saveCsv}>
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={isEmpty}
+        leftSection={<IconDownload size={14} aria-hidden />}
+        onClick={plot.saveCsv}
+      >
         CSV
       </Button>
       <Button
@@ -105,7 +77,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
         variant="default"
         disabled={isEmpty}
         leftSection={<IconPhotoDown size={14} aria-hidden />}
-        onClick={() => canvas.current && savePicture(canvas.current, 'recorded-curves.png')}
+        onClick={() => canvas.current && savePicture(canvas.current, entries, 'recorded-curves.png')}
       >
         PNG
       </Button>
@@ -113,11 +85,11 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
   )
 
   function body() {
-    if (problem || lost) return <Empty title="There are no recorded curves">{problem || lost}</Empty>
+    if (problem) return <Empty title="There are no recorded curves">{problem}</Empty>
     if (!topics) return <div role="status" aria-label="Loading" />
     return (
       <div className={classes.halves} data-choosing={isChoosing || undefined}>
-        {isChoosing && <FieldChooser topics={topics} chosen={known} onChoose={choose} />}
+        {isChoosing && <FieldChooser topics={topics} chosen={plot.chosen} onChoose={plot.choose} />}
         {isEmpty ? (
           <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is selected">
             Unfold a topic and tick what you want to see: joints, forces, widths.
@@ -135,13 +107,7 @@ export function RecordedPlots({ sources, durationS, cursorS, onGo }: RecordedPlo
               onPan={(byS) => part && setPart(panned(part, byS, durationS))}
               onWidth={setWidth}
             />
-            <Legend
-              entries={entries}
-              curves={curves}
-              atS={cursorS}
-              endS={undefined}
-              {...(sources.length === 1 && { onRemove: (id: string) => choose(chosen.filter((each) => each !== id)) })}
-            />
+            <Legend entries={entries} curves={curves} atS={cursorS} endS={undefined} onRemove={plot.remove} />
           </div>
         )}
       </div>

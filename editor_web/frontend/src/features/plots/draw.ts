@@ -19,6 +19,8 @@ export interface View {
   readonly atS: number | undefined
   /** Times are those of a recorded run, which has no gaps; else they are told as so long ago. */
   readonly isRecorded?: boolean
+  /** Where the axis of time begins, from the left edge. */
+  readonly leftPx?: number
 }
 
 export interface Look {
@@ -59,7 +61,7 @@ export function draw(
   units.forEach((unit, index) => {
     const height = inner / units.length
     const top = TOP_PX + index * (height + LANE_GAP_PX)
-    const area = { left: LEFT_PX, right: size.width - RIGHT_PX, top, bottom: top + height }
+    const area = { left: view.leftPx ?? LEFT_PX, right: size.width - RIGHT_PX, top, bottom: top + height }
     lane(
       pen,
       area,
@@ -70,7 +72,7 @@ export function draw(
       look,
     )
   })
-  const all = { left: LEFT_PX, right: size.width - RIGHT_PX, top: TOP_PX, bottom: size.height - FOOT_PX }
+  const all = { left: view.leftPx ?? LEFT_PX, right: size.width - RIGHT_PX, top: TOP_PX, bottom: size.height - FOOT_PX }
   timeAxis(pen, all, view, look)
   if (view.atS !== undefined) cursor(pen, all, view.atS, view, look)
 }
@@ -93,7 +95,7 @@ function lane(
   pen.fillStyle = look.text
   pen.textAlign = 'right'
   pen.textBaseline = 'middle'
-  const marks = marksOf(low, high, Math.max(2, Math.floor((area.bottom - area.top) / 24)))
+  const marks = marksOf(low, high, Math.max(1, Math.floor((area.bottom - area.top) / 24)))
   for (const mark of marks) {
     pen.beginPath()
     pen.moveTo(area.left, Math.round(y(mark)) + 0.5)
@@ -211,7 +213,7 @@ function xOf(at: number, area: { left: number; right: number }, view: View): num
 }
 
 /** The time at a place of the canvas. */
-export function timeAt(x: number, width: number, view: Pick<View, 'endS' | 'spanS'>): number {
+export function timeAt(x: number, width: number, view: Pick<View, 'endS' | 'spanS' | 'leftPx'>): number {
   const right = width - RIGHT_PX
-  return view.endS - ((right - x) / (right - LEFT_PX)) * view.spanS
+  return view.endS - ((right - x) / (right - (view.leftPx ?? LEFT_PX))) * view.spanS
 }

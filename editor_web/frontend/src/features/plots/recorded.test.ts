@@ -1,7 +1,7 @@
 /** Curves of two recordings over one another, and the numbers that both have. */
 import { expect, it } from 'vitest'
 import type { TopicFields } from '../../api/types'
-import { common, curveId, joined } from './recorded'
+import { common, curveId, joined, settledPart } from './recorded'
 
 const LEFT = { address: '/runs/r1', label: 'left', startS: 3 }
 const RIGHT = { address: '/runs/r2', label: 'right', startS: 5 }
@@ -37,4 +37,10 @@ it('offers the numbers that all recordings have', () => {
   expect(common([first, second])).toEqual([topic('arm', 'y')])
   expect(common([first])).toEqual(first)
   expect(common([])).toEqual([])
+})
+
+it('asks for more of a run that goes on in steps, and for the seen part as it is', () => {
+  expect(settledPart({ fromS: 0, untilS: 7.3 }, 7.3)).toEqual({ fromS: 0, untilS: 6 })
+  expect(settledPart({ fromS: 0, untilS: 601 }, 601).untilS).toBe(592)
+  expect(settledPart({ fromS: 1, untilS: 3 }, 7.3)).toEqual({ fromS: 1, untilS: 3 })
 })

@@ -1,5 +1,6 @@
 /** Curves of one or two recorded runs over one time, as they are drawn. Pure. */
 import { Curves } from '../../document/curves'
+import type { View } from '../../document/timeline'
 import type { RecordedCurves, TopicFields } from '../../api/types'
 
 /** A recorded run, and the time of its clock that is 0 in the plot. */
@@ -44,4 +45,13 @@ export function common(all: readonly (readonly TopicFields[])[]): readonly Topic
     )
     return fields.length > 0 ? [{ ...topic, fields }] : []
   })
+}
+
+const LEAST_STEP_S = 2
+const STEPS = 40
+
+/** The part of a run that goes on which is asked for: it grows in steps, for each of them reads the recording anew. */
+export function settledPart(view: View, durationS: number): View {
+  const stepS = 2 ** Math.ceil(Math.log2(Math.max(LEAST_STEP_S, durationS / STEPS)))
+  return view.untilS < durationS ? view : { fromS: view.fromS, untilS: Math.max(view.fromS + 1e-3, Math.floor(durationS / stepS) * stepS) }
 }

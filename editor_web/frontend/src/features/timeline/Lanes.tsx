@@ -2,9 +2,11 @@
 import { Box, Flex, Paper, useComputedColorScheme } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useEffect, useRef, useState, type KeyboardEvent } from 'react'
-import type { ActivationInterval, TimelineMarker } from '../../api/types'
+import type { ActivationInterval } from '../../api/types'
+import { rowOf, type Mark } from '../../document/measured'
 import { spanAt, timeAt, xOf, type ShownRow, type View } from '../../document/timeline'
 import { cleared, colorsOf, drawBars, drawHead, HEAD, ROW } from './draw'
+import { drawMeasured } from './drawMeasured'
 import { Names } from './Names'
 import classes from './Timeline.module.css'
 import { markWords, spanWords } from './words'
@@ -13,7 +15,7 @@ import { useGestures } from './useGestures'
 export interface LanesProps {
   readonly rows: readonly ShownRow[]
   readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
-  readonly marks: readonly TimelineMarker[]
+  readonly marks: readonly Mark[]
   readonly view: View
   readonly nowS: number
   readonly cursorS: number
@@ -27,6 +29,8 @@ export interface LanesProps {
   readonly onPan: (byS: number) => void
   readonly onShow: (path: string) => void
   readonly onToggle: (path: string) => void
+  /** How wide the axis of time is. */
+  readonly onWidth: (width: number) => void
 }
 
 interface Tip {
@@ -56,8 +60,13 @@ export function Lanes(props: LanesProps) {
     const first = cleared(onHead, width, HEAD)
     if (first) drawHead(first, view, width, marks, colors, font)
     const second = cleared(onBars, width, height)
-    if (second) drawBars(second, view, width, height, { rows, spans, selected, nowS, topPx }, colors, font)
+    if (!second) return
+    drawBars(second, view, width, height, { rows, spans, selected, nowS, topPx }, colors, font)
+    drawMeasured(second, view, { width, height }, { rows, marks, topPx }, colors, font)
   }, [rows, spans, marks, view, width, height, nowS, topPx, selected, scheme])
+
+  const { onWidth } = props
+  useEffect(() => onWidth(width), [width, onWidth])
 
   useEffect(() => {
     // A pinch would zoom the whole page; React cannot keep it from that.
@@ -67,16 +76,26 @@ export function Lanes(props: LanesProps) {
     return () => on?.removeEventListener('wheel', keep)
   }, [])
 
+  const nearS = (NEAR_PX / Math.max(width, 1)) * (view.untilS - view.fromS)
+
+  /** The time of the mark that is pressed, but for goals, which are everywhere. */
+  function snapped(timeS: number): number {
+    const near = marks.filter((mark) => mark.kind !== 'goal' && Math.abs(mark.time_s - timeS) <= nearS)
+    return near.toSorted((a, b) => Math.abs(a.time_s - timeS) - Math.abs(b.time_s - timeS))[0]?.time_s ?? timeS
+  }
+
   function pointed(x: number, y: number, isHead: boolean): readonly string[] | undefined {
     const timeS = timeAt(view, width, x)
-    const nearS = (NEAR_PX / Math.max(width, 1)) * (view.untilS - view.fromS)
+    const index = Math.floor((y + topPx) / ROW)
+    const near = marks.filter((mark) => Math.abs(mark.time_s - timeS) <= nearS * 1.5)
     if (isHead) {
-      const near = marks.filter((mark) => Math.abs(mark.time_s - timeS) <= nearS * 1.5)
       // What matters more than a goal is named first.
       const named = near.toSorted((a, b) => Number(a.kind === 'goal') - Number(b.kind === 'goal')).slice(0, 4)
       return named.length > 0 ? [...named.map(markWords), ...(near.length > 4 ? [`and ${near.length - 4} more`] : [])] : undefined
     }
-    const row = rows[Math.floor((y + topPx) / ROW)]
+    const measured = near.filter((mark) => mark.measured && rowOf(rows, mark.path) === index)
+    if (measured.length > 0) return measured.map(markWords)
+    const row = rows[index]
     const span = row && spanAt(spans.get(row.path) ?? [], timeS, nearS)
     return row && span && spanWords(row.path, span, nowS)
   }
@@ -89,6 +108,7 @@ export function Lanes(props: LanesProps) {
   const gestures = useGestures({
     view,
     width,
+    snapped,
     onGo: props.onGo,
     onZoom: props.onZoom,
     onPan: props.onPan,

@@ -3,6 +3,7 @@ import { ActionIcon, Button, Checkbox, Group, NativeSelect, Popover, Stack, Tool
 import {
   IconAlertTriangle,
   IconArrowsMaximize,
+  IconChartLine,
   IconChevronLeftPipe,
   IconChevronRightPipe,
   IconFilter,
@@ -15,6 +16,7 @@ import {
 import { useState, type ReactNode } from 'react'
 import { backToPresent, SPEEDS, useTimeline, type Subject } from '../../api/timeline'
 import { MARK_KINDS, MARK_WORDS, type MarkKind } from '../../document/timeline'
+import { MarkList, type MarkListProps } from './MarkList'
 import { play } from './usePlayback'
 
 export interface ToolsProps {
@@ -27,9 +29,12 @@ export interface ToolsProps {
   readonly onJump: (direction: 1 | -1, onlyFailures?: boolean) => void
   readonly onZoom: (factor: number) => void
   readonly onWhole: () => void
+  readonly list: MarkListProps
+  /** Undefined where there are no curves to be shown. */
+  readonly curves: { readonly isShown: boolean; readonly onToggle: () => void } | undefined
 }
 
-export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, onJump, onZoom, onWhole }: ToolsProps) {
+export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, onJump, onZoom, onWhole, list, curves }: ToolsProps) {
   const isPlaying = useTimeline((s) => s.isPlaying)
   const speed = useTimeline((s) => s.speed)
   const isPast = useTimeline((s) => s.timeS !== undefined)
@@ -74,6 +79,21 @@ export function Tools({ subject, durationS, width, hasFailures, kinds, onKinds, 
             {subject.isPast ? 'To the end' : 'Live'}
           </Button>
         )}
+        {curves && (
+          <Tooltip label="Recorded curves below the lanes" openDelay={300}>
+            <ActionIcon
+              variant={curves.isShown ? 'light' : 'subtle'}
+              {...(!curves.isShown && { color: 'gray' })}
+              size="md"
+              aria-label="Curves"
+              aria-pressed={curves.isShown}
+              onClick={curves.onToggle}
+            >
+              <IconChartLine size={16} />
+            </ActionIcon>
+          </Tooltip>
+        )}
+        <MarkList {...list} />
         <MarkMenu kinds={kinds} onKinds={onKinds} />
         <Tool label="Zoom in (+)" onPress={() => onZoom(0.5)}>
           <IconPlus size={16} />

@@ -14,6 +14,7 @@ export interface Colors {
   readonly quiet: string
   readonly line: string
   readonly ground: string
+  readonly surface: string
   readonly accent: string
   readonly accentSoft: string
   readonly status: Readonly<Record<string, readonly [edge: string, fill: string]>>
@@ -29,6 +30,7 @@ export function colorsOf(element: Element): Colors {
     quiet: of('quiet'),
     line: of('line'),
     ground: of('ground'),
+    surface: of('surface'),
     accent: of('accent'),
     accentSoft: of('accent-soft'),
     status,
@@ -40,6 +42,10 @@ export function colorsOf(element: Element): Colors {
       gate: of('stopped'),
       change: of('done'),
       goal: of('line-strong'),
+      contact: of('active'),
+      grasp: of('done'),
+      force: of('stopped'),
+      limit: of('failed'),
     },
   }
 }
@@ -97,7 +103,7 @@ export function drawHead(
 }
 
 /** Each kind has a shape of its own, for those who do not see the colour. */
-function drawMark(on: CanvasRenderingContext2D, kind: MarkKind, x: number, y: number, colors: Colors): void {
+export function drawMark(on: CanvasRenderingContext2D, kind: MarkKind, x: number, y: number, colors: Colors): void {
   on.fillStyle = colors.mark[kind]
   on.strokeStyle = colors.mark[kind]
   on.lineWidth = 2
@@ -118,6 +124,31 @@ function drawMark(on: CanvasRenderingContext2D, kind: MarkKind, x: number, y: nu
       break
     case 'command':
       on.rect(x - 4, y - 4, 8, 8)
+      break
+    case 'contact':
+      on.arc(x, y, 4.5, 0, 2 * Math.PI)
+      break
+    case 'grasp':
+      // Two fingers, open at the bottom.
+      on.moveTo(x - 4, y + 5)
+      on.lineTo(x - 4, y - 4)
+      on.lineTo(x + 4, y - 4)
+      on.lineTo(x + 4, y + 5)
+      on.stroke()
+      return
+    case 'force':
+      on.moveTo(x, y - 5)
+      on.lineTo(x + 5, y)
+      on.lineTo(x + 2, y)
+      on.lineTo(x + 2, y + 5)
+      on.lineTo(x - 2, y + 5)
+      on.lineTo(x - 2, y)
+      on.lineTo(x - 5, y)
+      break
+    case 'limit':
+      // Against a wall.
+      on.rect(x + 2, y - 5, 2.5, 10)
+      on.rect(x - 5, y - 1.5, 7, 3)
       break
     case 'gate':
       on.rect(x - 4, y - 5, 3, 10)

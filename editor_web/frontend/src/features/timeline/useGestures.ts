@@ -5,6 +5,8 @@ import { timeAt, type View } from '../../document/timeline'
 interface GesturesProps {
   readonly view: View
   readonly width: number
+  /** The time that is meant by a press at a time. */
+  readonly snapped: (timeS: number) => number
   readonly onGo: (timeS: number) => void
   readonly onZoom: (factor: number, aroundS: number) => void
   readonly onPan: (byS: number) => void
@@ -15,7 +17,7 @@ interface GesturesProps {
 
 const WHEEL = 0.0015
 
-export function useGestures({ view, width, onGo, onZoom, onPan, onHover, onLeave }: GesturesProps) {
+export function useGestures({ view, width, snapped, onGo, onZoom, onPan, onHover, onLeave }: GesturesProps) {
   const pointers = useRef(new Map<number, number>())
   const isPanning = useRef(false)
   const secondsPerPx = (view.untilS - view.fromS) / Math.max(width, 1)
@@ -26,7 +28,7 @@ export function useGestures({ view, width, onGo, onZoom, onPan, onHover, onLeave
     const x = xIn(event)
     pointers.current.set(event.pointerId, x)
     isPanning.current = event.button === 1 || event.shiftKey
-    if (pointers.current.size === 1 && !isPanning.current) onGo(timeAt(view, width, x))
+    if (pointers.current.size === 1 && !isPanning.current) onGo(snapped(timeAt(view, width, x)))
   }
 
   function onPointerMove(event: PointerEvent<HTMLElement>, isHead: boolean): void {
