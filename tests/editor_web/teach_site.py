@@ -20,7 +20,7 @@ from editor_web.teaching import jogging
 from engine.bus import SkillBus
 from engine.bus.json_bus import CLI_HOLDER
 from engine.cell.open_cell import OpenCell
-from engine.document.cell import load_cell
+from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
 from engine.messages import JointState
 from engine.project.session import Session
@@ -74,7 +74,7 @@ class TeachSite:
         project: Path,
         triggers: tuple[Trigger, ...] = (),
         view: bool = False,
-        cell: Path | None = None,
+        cell: Cell | None = None,
         warm: bool = True,
     ) -> None:
         self.project = project
@@ -83,10 +83,9 @@ class TeachSite:
         self._thread = threading.Thread(target=self.loop.run_forever, name="teach site")
         self._open = AsyncExitStack()
         self._parts: tuple[OpenCell, Session, Dashboard] | None = None
-        self._cell = cell or project / "behaviors" / "cells" / "taught.yaml"
-        if cell is None:
-            self._cell.parent.mkdir(parents=True, exist_ok=True)
-            self._cell.write_text(CELL, encoding="utf-8")
+        (project / "behaviors" / "cells").mkdir(parents=True, exist_ok=True)
+        (project / "behaviors" / "cells" / "taught.yaml").write_text(CELL, encoding="utf-8")
+        self._cell = cell or load_cell(project / "behaviors" / "cells" / "taught.yaml")
 
     @property
     def bus(self) -> SkillBus:
@@ -239,7 +238,7 @@ class TeachSite:
     async def _up(self) -> None:
         enter = self._open.enter_async_context
         journal = self._open.enter_context(Journal.open(self.project / ".flexcell"))
-        cell = OpenCell(load_cell(self._cell), store_path=str(self.project / "cell.db"))
+        cell = OpenCell(self._cell, store_path=str(self.project / "cell.db"))
         await enter(cell)
         hand = HelpingHand(
             cell.bus,
