@@ -237,7 +237,8 @@ class HandleDrag:
         if isinstance(status, RefusedFrame):
             self._is_refused = True
             self._send(status)
-        elif isinstance(status, PressDropped):
+        elif isinstance(status, PressDropped) and not self._drags:
+            # In a drag the tool still follows.
             self._refuse(f"the drag has moved nothing: the arm could not begin within {status.within_s:g} s", "")
 
     def _refuse(self, message: str, hint: str) -> None:
