@@ -50,7 +50,7 @@ _STOP = """() => fetch('/api/v1/cell/stop', {method: 'POST', headers: {'content-
 
 
 @dataclass(frozen=True, kw_only=True)
-class Way:
+class Direction:
     """Where a press is to move the arm: along or about an axis of a frame, or a joint."""
 
     axis: int
@@ -83,20 +83,20 @@ class Log:
         """Return the samples after a place in which a joint moves."""
         return [k for k in range(since, len(self.rows)) if _fastest(self.rows[k][1]) > RESTS_RAD_S]
 
-    def goes(self, since: int, way: Way) -> bool:
-        """Return whether the arm has gone that way since a place."""
+    def goes(self, since: int, direction: Direction) -> bool:
+        """Return whether the arm has gone that direction since a place."""
         first, last = (np.array(self.rows[k][1].position_rad) for k in (since, -1))
-        if way.space == "Joints":
-            wanted, done, least = np.eye(len(first))[way.axis] * way.sign, last - first, LEAST_RAD
+        if direction.space == "Joints":
+            expected, done, least = np.eye(len(first))[direction.axis] * direction.sign, last - first, LEAST_RAD
         else:
             before, after = self.kinematics.tool_pose(first), self.kinematics.tool_pose(last)
-            axes = before.rotation if way.frame == "Tool axes" else np.eye(3)
-            wanted = axes[:, way.axis % 3] * way.sign
+            axes = before.rotation if direction.frame == "Tool axes" else np.eye(3)
+            expected = axes[:, direction.axis % 3] * direction.sign
             turned = after.rotation @ before.rotation.T
-            done = after.xyz - before.xyz if way.axis < 3 else _rotation_vector(turned)
-            least = LEAST_M if way.axis < 3 else LEAST_RAD
+            done = after.xyz - before.xyz if direction.axis < 3 else _rotation_vector(turned)
+            least = LEAST_M if direction.axis < 3 else LEAST_RAD
         length = float(np.linalg.norm(done))
-        return length > least and float(done @ wanted) > STRAIGHT * length
+        return length > least and float(done @ expected) > STRAIGHT * length
 
 
 def _fastest(state: JointState) -> float:
@@ -108,7 +108,7 @@ def _rotation_vector(turned: Array) -> Array:
 
 
 @dataclass
-class Bench:
+class JogTrial:
     """A page that jogs, and the log of its arm."""
 
     site: TeachSite
@@ -116,7 +116,9 @@ class Bench:
     log: Log
     random: random.Random
 
-    def press(self, way: Way, down: Callable[[], object], up: Callable[[], object], hold_s: float = 0.0) -> Result:
+    def press(
+        self, direction: Direction, down: Callable[[], object], up: Callable[[], object], hold_s: float = 0.0
+    ) -> Result:
         """Press once and wait until the arm has moved and rests, the page tells of it, or it is lost."""
         since = max(0, len(self.log.rows) - 1)
         down_s = time.perf_counter()
@@ -128,13 +130,13 @@ class Bench:
         while time.perf_counter() - up_s < LOST_S:
             moves = self.log.moves(since)
             if moves and self.log.rows[-1][1].time_s - self.log.rows[moves[-1]][1].time_s > STILL_S:
-                began_s, ended_s = self.log.rows[moves[0]][0], self.log.rows[moves[-1]][0]
-                end = "moved" if self.log.goes(since, way) else "wrong way"
-                return Result(end=end, to_motion_s=began_s - down_s, to_rest_s=ended_s - up_s)
+                motion_s, ended_s = self.log.rows[moves[0]][0], self.log.rows[moves[-1]][0]
+                end = "moved" if self.log.goes(since, direction) else "wrong way"
+                return Result(end=end, to_motion_s=motion_s - down_s, to_rest_s=ended_s - up_s)
             if not moves and DROPPED in self.words():
                 return Result(end="told")
             self.page.wait_for_timeout(20)
-        print(f"lost: {way}; the page says: {self.words()!r}", file=sys.stderr)
+        print(f"lost: {direction}; the page says: {self.words()!r}", file=sys.stderr)
         return Result(end="lost")
 
     def words(self) -> str:
@@ -153,40 +155,40 @@ class Bench:
         if not radio.is_checked():
             self.page.get_by_role("radiogroup", name=group).get_by_text(name, exact=True).click()
 
-    def middle(self, way: Way) -> tuple[float, float]:
-        """Where the button of a way is."""
-        name = AXES[way.axis] if way.space == "Tool" else f"J{way.axis + 1}"
-        button = self.page.get_by_role("button", name=f"{name} {'plus' if way.sign > 0 else 'minus'}", exact=True)
+    def middle(self, direction: Direction) -> tuple[float, float]:
+        """Where the button of a direction is."""
+        name = AXES[direction.axis] if direction.space == "Tool" else f"J{direction.axis + 1}"
+        button = self.page.get_by_role("button", name=f"{name} {'plus' if direction.sign > 0 else 'minus'}", exact=True)
         button.scroll_into_view_if_needed()
         box = button.bounding_box()
         assert box is not None
         return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
-    def by_mouse(self, way: Way) -> Result:
+    def by_mouse(self, direction: Direction) -> Result:
         """Press a button."""
-        self.page.mouse.move(*self.middle(way))
-        return self.press(way, self.page.mouse.down, self.page.mouse.up, self.random.choice(HOLDS_S))
+        self.page.mouse.move(*self.middle(direction))
+        return self.press(direction, self.page.mouse.down, self.page.mouse.up, self.random.choice(HOLDS_S))
 
-    def by_keyboard(self, way: Way) -> Result:
+    def by_keyboard(self, direction: Direction) -> Result:
         """Press a key of the keyboard."""
         self.page.get_by_role("button", name="Jog with the keyboard").focus()
-        key = KEYS[1 + (way.axis % 3) * 2 + (way.sign < 0)]
-        keys = ["Shift", key] if way.axis > 2 else [key]
+        key = KEYS[1 + (direction.axis % 3) * 2 + (direction.sign < 0)]
+        keys = ["Shift", key] if direction.axis > 2 else [key]
 
         def each(act: Callable[[str], None], names: Sequence[str]) -> None:
             for name in names:
                 act(name)
 
         return self.press(
-            way,
+            direction,
             lambda: each(self.page.keyboard.down, keys),
             lambda: each(self.page.keyboard.up, keys[::-1]),
             self.random.choice(HOLDS_S),
         )
 
-    def by_touch(self, way: Way) -> Result:
+    def by_touch(self, direction: Direction) -> Result:
         """Touch a button."""
-        x, y = self.middle(way)
+        x, y = self.middle(direction)
         # The methods of the protocol are untyped: Any contains them here.
         send = cast("Any", self.page.context.new_cdp_session(self.page)).send
 
@@ -194,25 +196,25 @@ class Bench:
             send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
         return self.press(
-            way,
+            direction,
             lambda: touch("touchStart", [{"x": x, "y": y}]),
             lambda: touch("touchEnd", []),
             self.random.choice(HOLDS_S),
         )
 
-    def by_pad(self, pads: Gamepads, *rest: int) -> Callable[[Way], Result]:
+    def by_pad(self, pads: Gamepads, *rest: int) -> Callable[[Direction], Result]:
         """Push a stick; `rest` are the buttons that stay down between."""
 
-        def pressed(way: Way) -> Result:
+        def pressed(direction: Direction) -> Result:
             sticks = [0.0] * 4
-            sticks[(1, 0, 3)[way.axis % 3]] = float(-way.sign)
-            buttons = (DEADMAN, SHIFT) if way.axis > 2 else (DEADMAN,)
+            sticks[(1, 0, 3)[direction.axis % 3]] = float(-direction.sign)
+            buttons = (DEADMAN, SHIFT) if direction.axis > 2 else (DEADMAN,)
 
             def down() -> None:
                 pads.hold(*buttons, axes=sticks)
                 pads.looked_at(3)
 
-            result = self.press(way, down, lambda: pads.hold(*rest))
+            result = self.press(direction, down, lambda: pads.hold(*rest))
             pads.looked_at(3)
             return result
 
@@ -230,37 +232,40 @@ class Bench:
                 self.page.mouse.move(x + sign * share * along_x, y + sign * share * along_y)
 
         return self.press(
-            Way(axis=arrow.axis, sign=sign, frame="Tool axes"), pull, self.page.mouse.up, self.random.choice(HOLDS_S)
+            Direction(axis=arrow.axis, sign=sign, frame="Tool axes"),
+            pull,
+            self.page.mouse.up,
+            self.random.choice(HOLDS_S),
         )
 
-    def changes(self, count: int, *, axes: int = 6) -> list[Way]:
-        """Seeded ways, there and back, each another than the one before."""
-        ways: list[Way] = []
-        while len(ways) < count:
-            way = Way(axis=self.random.randrange(axes), sign=self.random.choice((1, -1)))
-            if not ways or way.axis != ways[-1].axis:
-                ways += [way, Way(axis=way.axis, sign=-way.sign)]
-        return ways[:count]
+    def changes(self, count: int, *, axes: int = 6) -> list[Direction]:
+        """Seeded directions, there and back, each another than the one before."""
+        directions: list[Direction] = []
+        while len(directions) < count:
+            direction = Direction(axis=self.random.randrange(axes), sign=self.random.choice((1, -1)))
+            if not directions or direction.axis != directions[-1].axis:
+                directions += [direction, Direction(axis=direction.axis, sign=-direction.sign)]
+        return directions[:count]
 
 
-def firsts(bench: Bench, opened_s: float) -> Generator[tuple[str, Result]]:
+def firsts(trial: JogTrial, opened_s: float) -> Generator[tuple[str, Result]]:
     """The first press after each change."""
-    bench.ready()
+    trial.ready()
     print(f"the keys were enabled {time.perf_counter() - opened_s:.1f} s after the page was opened\n", flush=True)
-    up, down = (Way(axis=2, sign=sign) for sign in (1, -1))
-    yield "start", bench.by_mouse(up)
-    yield "button", bench.by_mouse(down)
+    up, down = (Direction(axis=2, sign=sign) for sign in (1, -1))
+    yield "start", trial.by_mouse(up)
+    yield "button", trial.by_mouse(down)
     for frame in ("Base", "Tool axes", "World"):
-        bench.choose("Along the axes of", frame)
+        trial.choose("Along the axes of", frame)
         sign = 1 if frame != "Tool axes" else -1
-        yield f"frame {frame}", bench.by_mouse(Way(axis=2, sign=sign, frame=frame))
+        yield f"frame {frame}", trial.by_mouse(Direction(axis=2, sign=sign, frame=frame))
     for space in ("Joints", "Tool"):
-        bench.choose("Jog target", space)
-        yield f"mode {space}", bench.by_mouse(Way(axis=1, sign=-1, space=space))
-    assert bench.page.evaluate(_STOP) < 300
-    bench.page.wait_for_timeout(500)
-    bench.ready()
-    yield "stop", bench.by_mouse(up)
+        trial.choose("Jog target", space)
+        yield f"mode {space}", trial.by_mouse(Direction(axis=1, sign=-1, space=space))
+    assert trial.page.evaluate(_STOP) < 300
+    trial.page.wait_for_timeout(500)
+    trial.ready()
+    yield "stop", trial.by_mouse(up)
 
 
 def row(name: str, results: Sequence[Result]) -> str:
@@ -277,38 +282,41 @@ def _times(times_s: Sequence[float]) -> str:
     return f"{median(times_s) * 1e3:.0f} / {max(times_s) * 1e3:.0f} ms" if times_s else "–"
 
 
-def measure(bench: Bench, presses: int, drags: int, opened_s: float, inputs: Sequence[str]) -> None:
+def measure(trial: JogTrial, presses: int, drags: int, opened_s: float, inputs: Sequence[str]) -> None:
     """Print a row for each kind of input as soon as it is known."""
     print("| input | presses | moved | told | lost | wrong way | to motion, median / most | to rest |")
     print("|---|---|---|---|---|---|---|---|", flush=True)
-    for name, result in firsts(bench, opened_s):
+    for name, result in firsts(trial, opened_s):
         print(row(f"first after {name}", [result]), flush=True)
-    by: dict[str, Callable[[Way], Result]] = {
-        "mouse": bench.by_mouse,
-        "keyboard": bench.by_keyboard,
-        "touch": bench.by_touch,
+    by: dict[str, Callable[[Direction], Result]] = {
+        "mouse": trial.by_mouse,
+        "keyboard": trial.by_keyboard,
+        "touch": trial.by_touch,
     }
     for name in inputs:
         if name in by:
-            print(row(name, [by[name](way) for way in bench.changes(presses)]), flush=True)
+            print(row(name, [by[name](direction) for direction in trial.changes(presses)]), flush=True)
     if "gamepad" in inputs:
-        pads = Gamepads(bench.page)
-        bench.page.get_by_role("switch", name="Jog with a gamepad").click(force=True)
+        pads = Gamepads(trial.page)
+        trial.page.get_by_role("switch", name="Jog with a gamepad").click(force=True)
         pads.hold()
         pads.looked_at()
-        print(row("gamepad", [bench.by_pad(pads)(way) for way in bench.changes(presses)]), flush=True)
+        print(row("gamepad", [trial.by_pad(pads)(direction) for direction in trial.changes(presses)]), flush=True)
         print(
-            row("stick alone", [bench.by_pad(pads, DEADMAN)(way) for way in bench.changes(presses, axes=3)]), flush=True
+            row(
+                "stick alone", [trial.by_pad(pads, DEADMAN)(direction) for direction in trial.changes(presses, axes=3)]
+            ),
+            flush=True,
         )
         pads.hold()
     if "handle" in inputs:
-        bench.page.get_by_role("button", name="Handle").click()
-        bench.page.get_by_role("radiogroup", name="Arm with the handle").get_by_text(ARM, exact=True).click()
-        bench.page.keyboard.press("Escape")
+        trial.page.get_by_role("button", name="Handle").click()
+        trial.page.get_by_role("radiogroup", name="Arm with the handle").get_by_text(ARM, exact=True).click()
+        trial.page.keyboard.press("Escape")
         results: list[Result] = []
         while len(results) < drags:
-            for arrow in find_arrows(bench.page):
-                results += [bench.by_handle(arrow, sign) for sign in (1, -1)]
+            for arrow in find_arrows(trial.page):
+                results += [trial.by_handle(arrow, sign) for sign in (1, -1)]
         print(row("handle", results), flush=True)
 
 
@@ -345,10 +353,10 @@ def main() -> None:
     served = opened(options.cell, options.host, view="handle" in inputs)
     with served as (site, log), sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
-        began_s = time.perf_counter()
+        opened_s = time.perf_counter()
         with opened_page(browser, site.running, "/teach", quiet=False, size=(1280, 800)) as page:
-            bench = Bench(site, page, log, random.Random(SEED))
-            measure(bench, options.presses, options.drags, began_s, inputs)
+            trial = JogTrial(site, page, log, random.Random(SEED))
+            measure(trial, options.presses, options.drags, opened_s, inputs)
 
 
 if __name__ == "__main__":

@@ -67,7 +67,7 @@ class _Drag:
 
     target: WorldPose
     is_over: asyncio.Event = field(default_factory=asyncio.Event)
-    is_followed: bool = False
+    is_commanded: bool = False
 
 
 class HandleDrag:
@@ -179,7 +179,7 @@ class HandleDrag:
         while not self._is_refused:
             if self._loop.time() - self._held_s < SILENCE_S:
                 await self._step(take, drag.target)
-                drag.is_followed = True
+                drag.is_commanded = True
             else:
                 # The drag resumes if keep-alives arrive again while the mouse is still down.
                 await self._jogger.rest()
@@ -189,7 +189,7 @@ class HandleDrag:
             with suppress(TimeoutError):
                 async with asyncio.timeout(PERIOD_S):
                     await drag.is_over.wait()
-        if not drag.is_followed:
+        if not drag.is_commanded:
             self._refuse(
                 "the drag has moved nothing: it was over before the arm could follow", "drag again, for longer"
             )

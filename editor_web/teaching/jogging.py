@@ -154,9 +154,9 @@ class Jogger:
         now_s = self._loop.time()
         while self._presses and self._presses[0].is_up and now_s - self._presses[0].heard_s > MOST_WAIT_S:
             if self._presses.popleft().velocity:
-                self._tell_dropped()
+                self._report_dropped()
 
-    def _tell_dropped(self) -> None:
+    def _report_dropped(self) -> None:
         if self._opened is not None:
             self._send(PressDropped(arm=self._opened.arm, within_s=MOST_WAIT_S))
 
@@ -205,7 +205,7 @@ class Jogger:
                 await goal.accepted()
                 await is_idle.wait()
         except TimeoutError:
-            self._tell_dropped()
+            self._report_dropped()
         except FlexcellError:
             # The goal itself tells why it has ended.
             return
@@ -227,16 +227,16 @@ class Jogger:
     def _on_sent(self, goal: GoalHandle[Any, Any]) -> None:
         self._goal = goal
         goal.on_accepted(self._on_accepted)
-        told = 0
+        reported = 0
 
-        def tell(feedback: object) -> None:
-            nonlocal told
+        def report(feedback: object) -> None:
+            nonlocal reported
             dropped = int(getattr(feedback, "dropped", 0))
-            while told < dropped:
-                told += 1
-                self._tell_dropped()
+            while reported < dropped:
+                reported += 1
+                self._report_dropped()
 
-        goal.on_feedback(tell)
+        goal.on_feedback(report)
 
     def _on_accepted(self) -> None:
         self._is_accepted = True

@@ -68,18 +68,18 @@ class PressQueue:
 
     def take(self, command: JogCommand, now_s: float) -> None:
         """Begin, continue or release a press."""
-        said_s = now_s - command.age_s
+        command_s = now_s - command.age_s
         last = self._presses[-1] if self._presses else None
         is_held = last is not None and last.released_s is None
         if last is not None and is_held and (command.least_s > 0.0 or not any(command.velocity)):
-            last.released_s, is_held = said_s, False
+            last.released_s, is_held = command_s, False
         if not any(command.velocity):
             return
         if last is not None and is_held:
-            last.velocity, last.frame, last.heard_s, last.blocked = command.velocity, command.frame, said_s, False
+            last.velocity, last.frame, last.heard_s, last.blocked = command.velocity, command.frame, command_s, False
             return
         self._presses.append(
-            Press(velocity=command.velocity, frame=command.frame, least_s=command.least_s, heard_s=said_s)
+            Press(velocity=command.velocity, frame=command.frame, least_s=command.least_s, heard_s=command_s)
         )
 
     def advance(self, now_s: float) -> Press | None:

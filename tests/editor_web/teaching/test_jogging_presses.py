@@ -56,11 +56,12 @@ def executed(arm: Jogged, presses: Sequence[Press]) -> list[float]:
     now = 0
     for before, after in pairwise(arm.log):
         change = after - before
-        while change.any() and not (far := presses[now].along(before, change)):
+        if not change.any():
+            continue
+        while not presses[now].along(before, change):
             now += 1
             assert now < len(presses), "the arm goes another way than any key says"
-        if change.any():
-            gone[now] += far
+        gone[now] += presses[now].along(before, change)
     return gone
 
 
@@ -81,7 +82,9 @@ async def test_none_of_a_hundred_changes_of_direction_is_lost() -> None:
 
 
 @pytest.mark.virtual
-async def test_of_presses_that_come_too_fast_each_is_executed_or_told_and_nothing_moves_long_after_the_last() -> None:
+async def test_of_presses_that_come_too_fast_each_is_executed_or_reported_and_nothing_moves_long_after_the_last() -> (
+    None
+):
     random_ = random.Random(SEED)
     taps = [replace(press, hold_s=0.0) for press in there_and_back(random_) if press.jog.space == "tool"]
     async with jogged() as arm:
@@ -157,7 +160,7 @@ async def test_another_goal_takes_the_arm_while_nothing_is_pressed_and_not_befor
 
 @pytest.mark.virtual
 @pytest.mark.parametrize("is_open", [True, False])
-async def test_nothing_begins_to_move_long_after_its_release_and_the_page_is_told(is_open: bool) -> None:
+async def test_nothing_begins_to_move_long_after_its_release_and_the_page_says_so(is_open: bool) -> None:
     """Whoever has let go of a key is not surprised by it later; whether the goal is open, or opens for this press."""
     async with jogged() as arm:
         if is_open:

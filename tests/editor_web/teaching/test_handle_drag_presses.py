@@ -112,7 +112,7 @@ async def hand_at_handle() -> AsyncGenerator[Hand]:
             moving.cancel()
 
 
-def any_way(random_: random.Random) -> Array:
+def any_pull(random_: random.Random) -> Array:
     """A way of the handle that is no shorter than what a hand does, along one of the axes."""
     way = np.zeros(3)
     way[random_.randrange(3)] = random_.choice((1.0, -1.0)) * FAR_M
@@ -129,7 +129,7 @@ def moved(arm: Jogged, since: int) -> Array:
 async def test_none_of_a_hundred_changes_of_direction_by_the_handle_is_lost() -> None:
     """There and back, each drag let go at once or soon; the arm goes the way of the drag and no other."""
     random_ = random.Random(SEED)
-    ways = [sign * way for way in (any_way(random_) for _ in range(DRAGS // 2)) for sign in (1.0, -1.0)]
+    ways = [sign * way for way in (any_pull(random_) for _ in range(DRAGS // 2)) for sign in (1.0, -1.0)]
     wrong: list[tuple[int, Array]] = []
     async with hand_at_handle() as hand:
         for k, way in enumerate(ways):
