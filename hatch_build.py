@@ -78,11 +78,22 @@ def npm_call(*arguments: str) -> tuple[list[str], dict[str, str]]:
 
 
 def install() -> None:
-    """Install the locked packages where they are missing or the lock file has changed."""
+    """Install the locked packages where they are missing or the lock file has changed.
+
+    Raises:
+        RuntimeError: `node_modules` is a link to packages of another lock file, or npm failed.
+    """
     lock = (SOURCE / "package-lock.json").read_bytes()
-    stamp = SOURCE / "node_modules" / ".lock-digest"
+    packages = SOURCE / "node_modules"
+    stamp = packages / ".lock-digest"
     locked = hashlib.sha256(lock).hexdigest()
     if not stamp.exists() or stamp.read_text(encoding="ascii") != locked:
+        if packages.is_symlink():
+            # npm empties the folder before it installs, also that of somebody else.
+            raise RuntimeError(
+                f"{packages} is a link to {packages.readlink()}, whose packages are not those of package-lock.json: "
+                "remove the link, or install the packages there"
+            )
         npm("ci", "--include=dev", "--no-fund", "--no-audit")
         stamp.write_text(locked, encoding="ascii")
 

@@ -1,14 +1,17 @@
 """Dragging an arm by its handle in the 3D view: the tool follows the handle, or is pushed towards it, during the drag.
 
 A drag needs two signals: viser's drag events, and a keep-alive of the page every 50 ms. When either ends, for any
-reason, the arm comes to rest.
+reason, the arm comes to rest. A drag is a press: one that is over before the arm has moved is executed for a moment.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 import msgspec
@@ -17,8 +20,8 @@ from numpy.typing import NDArray
 
 from editor_web.cell_view import CellView, DragHandle, HandlePull
 from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
-from editor_web.teaching.jogging import Jogger
-from editor_web.teaching.teaching_messages import JogStatus, PushToolBody, RefusedFrame, StartJog
+from editor_web.teaching.jogging import Jogger, ToPage
+from editor_web.teaching.teaching_messages import PressDropped, PushToolBody, RefusedFrame, StartJog
 from editor_web.teaching.tool_push import push
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription
@@ -58,6 +61,15 @@ class HandleStatus(msgspec.Struct, frozen=True, kw_only=True, tag="gripped", tag
 FrameSender = Callable[[HandleStatus | RefusedFrame], None]
 
 
+@dataclass(kw_only=True)
+class _Drag:
+    """One drag: where the handle is, whether the mouse is up again, and whether the tool was told to follow."""
+
+    target: WorldPose
+    is_over: asyncio.Event = field(default_factory=asyncio.Event)
+    is_commanded: bool = False
+
+
 class HandleDrag:
     """The drag handle of one page in its 3D view; on the event loop.
 
@@ -80,7 +92,8 @@ class HandleDrag:
         self._loop = asyncio.get_running_loop()
         self._take = ShowHandle()
         self._handle: DragHandle | None = None
-        self._target: WorldPose | None = None
+        # At the end the drag that goes on; before it those that the arm has not followed yet.
+        self._drags: deque[_Drag] = deque()
         self._held_s = -math.inf
         self._is_refused = False
         self._task: asyncio.Task[None] | None = None
@@ -119,7 +132,7 @@ class HandleDrag:
     async def _stop_drag(self) -> None:
         # Ignores the handle from now on, which the page can drag until it is removed.
         self._take = ShowHandle()
-        self._target = None
+        self._drags.clear()
         task, self._task = self._task, None
         if task is not None:
             task.cancel()
@@ -136,30 +149,51 @@ class HandleDrag:
     def _pulled(self, take: ShowHandle, pull: HandlePull) -> None:
         if take is not self._take:
             return
-        if pull.phase == "end":
-            self._target = None
-            return
-        self._target = pull.pose
-        if pull.phase == "start" and (self._task is None or self._task.done()):
-            self._task = asyncio.create_task(self._follow(take), name=f"handle of {take.arm}")
+        if pull.phase == "start":
+            self._drags.append(_Drag(target=pull.pose))
+            if self._task is None or self._task.done():
+                self._task = asyncio.create_task(self._follow(take), name=f"handle of {take.arm}")
+        elif self._drags and pull.phase == "end":
+            self._drags[-1].is_over.set()
+        elif self._drags:
+            self._drags[-1].target = pull.pose
 
     async def _follow(self, take: ShowHandle) -> None:
+        """Follow the drags, one after the other."""
         self._is_refused = False
         self._send_status()
         try:
-            while self._target is not None and not self._is_refused:
-                if self._loop.time() - self._held_s < SILENCE_S:
-                    await self._step(take, self._target)
-                else:
-                    # The drag resumes if keep-alives arrive again while the mouse is still down.
-                    await self._jogger.rest()
-                await asyncio.sleep(PERIOD_S)
+            while self._drags and not self._is_refused:
+                await self._follow_drag(take, self._drags[0])
+                self._drags.popleft()
         except FlexcellError as error:
             self._refuse(error.message, error.hint or "")
         finally:
-            self._target = None
-            await self._rest(take)
+            if self._drags:
+                # Not let go but broken off.
+                self._drags.clear()
+                await self._rest(take)
             self._send_status()
+
+    async def _follow_drag(self, take: ShowHandle, drag: _Drag) -> None:
+        while not self._is_refused:
+            if self._loop.time() - self._held_s < SILENCE_S:
+                await self._step(take, drag.target)
+                drag.is_commanded = True
+            else:
+                # The drag resumes if keep-alives arrive again while the mouse is still down.
+                await self._jogger.rest()
+            if drag.is_over.is_set():
+                break
+            # What was said last before the mouse went up counts too.
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PERIOD_S):
+                    await drag.is_over.wait()
+        if not drag.is_commanded:
+            self._refuse(
+                "the drag has moved nothing: it was over before the arm could follow", "drag again, for longer"
+            )
+        await self._release(take)
 
     async def _step(self, take: ShowHandle, target: WorldPose) -> None:
         now = self._now(take.arm)
@@ -170,10 +204,19 @@ class HandleDrag:
             await self._jogger.begin(StartJog(arm=take.arm, space="tool", frame="world"))
         await self._jogger.go(_velocity(now, target))
 
+    async def _release(self, take: ShowHandle) -> None:
+        if take.mode == "move":
+            await self._jogger.release()
+        else:
+            await self._end_push(take)
+
     async def _rest(self, take: ShowHandle) -> None:
         if take.mode == "move":
             await self._jogger.rest()
-            return
+        else:
+            await self._end_push(take)
+
+    async def _end_push(self, take: ShowHandle) -> None:
         try:
             await self._push(take.arm, (0.0, 0.0, 0.0))
         except FlexcellError:
@@ -190,16 +233,19 @@ class HandleDrag:
                 return now
         raise FlexcellError("the pose of the tool is unknown", where=arm)
 
-    def _on_jog(self, status: JogStatus | RefusedFrame) -> None:
+    def _on_jog(self, status: ToPage) -> None:
         if isinstance(status, RefusedFrame):
             self._is_refused = True
             self._send(status)
+        elif isinstance(status, PressDropped) and not self._drags:
+            # In a drag the tool still follows.
+            self._refuse(f"the drag has moved nothing: the arm could not begin within {status.within_s:g} s", "")
 
     def _refuse(self, message: str, hint: str) -> None:
         self._send(RefusedFrame(what="jog", message=message, hint=hint))
 
     def _send_status(self) -> None:
-        self._send(HandleStatus(arm=self._take.arm, mode=self._take.mode, pulled=self._target is not None))
+        self._send(HandleStatus(arm=self._take.arm, mode=self._take.mode, pulled=bool(self._drags)))
 
 
 def _velocity(now: WorldPose, target: WorldPose) -> tuple[float, ...]:

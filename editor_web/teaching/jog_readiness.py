@@ -25,16 +25,16 @@ class JogPreparation:
         self.arm = ""
 
     def begin(self, arm: str) -> None:
-        """Prepare an arm from now on."""
+        """Prepare an arm from now on; none where the name is empty."""
         self.arm = arm
         self.repeat()
 
     def repeat(self) -> None:
         """Prepare the arm anew, as after a stop."""
-        if not self.arm:
-            return
         if self._task is not None:
             self._task.cancel()
+        if not self.arm:
+            return
         self._send(JogReadiness(arm=self.arm, ready=False))
         self._task = asyncio.create_task(self._prepare(self.arm), name=f"prepare jogging of {self.arm}")
 

@@ -10,12 +10,11 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 from editor_web.teaching.goal_failure_text import goal_failure_text
-from editor_web.teaching.teaching_messages import JogStatus, RefusedFrame, StartJog
+from editor_web.teaching.teaching_messages import JogStatus, PressDropped, RefusedFrame, StartJog
 from engine.bus import GoalHandle, GoalStatus, JsonBus
 from engine.errors import FlexcellError
 from engine.skills.jogging import MOST_WAIT_S
@@ -29,8 +28,10 @@ IDLE_S = 3.0
 LEAST_PRESS_S = 0.1
 """The shortest press: as long as a key that is tapped."""
 MOST_M_S, MOST_RAD_S, MOST_JOINT_RAD_S = 0.25, 1.0, 1.0
+_LATE_S = 0.001
 _LINEAR = 3
 _TWIST = 6
+ToPage = JogStatus | PressDropped | RefusedFrame
 
 
 @dataclass(kw_only=True)
@@ -61,9 +62,7 @@ class Jogger:
         send: Receives the messages to the page.
     """
 
-    def __init__(
-        self, bus: JsonBus, *, taken: dict[str, Jogger], send: Callable[[JogStatus | RefusedFrame], None]
-    ) -> None:
+    def __init__(self, bus: JsonBus, *, taken: dict[str, Jogger], send: Callable[[ToPage], None]) -> None:
         self._bus = bus
         self._taken = taken
         self._send = send
@@ -97,7 +96,6 @@ class Jogger:
                 self._refuse("another page jogs this arm", "wait until it stops jogging")
                 return
             await other.rest()
-        self._drop_old_presses()
         self._presses.append(_Press(jog=jog))
         self._send(JogStatus(arm=jog.arm))
         self._keep_open()
@@ -115,6 +113,13 @@ class Jogger:
             self._refuse(fault, "")
             await self.rest()
             return
+        if not any(velocity):
+            # A stick in its middle: what it says next is a press of its own.
+            if press.velocity:
+                press.is_up = True
+                self._presses.append(_Press(jog=press.jog))
+                await self._publish_presses()
+            return
         press.velocity, press.heard_s = velocity, self._loop.time()
         await self._publish_presses()
 
@@ -124,6 +129,8 @@ class Jogger:
         if press is None or press.is_up:
             return
         press.is_up, press.heard_s = True, self._loop.time()
+        if not self._is_accepted:
+            self._loop.call_later(MOST_WAIT_S + _LATE_S, self._drop_old_presses)
         await self._publish_presses()
         self._send(JogStatus(arm=""))
         self._keep_open()
@@ -143,16 +150,21 @@ class Jogger:
             self._release()
 
     def _drop_old_presses(self) -> None:
+        """Leave the presses that the arm may not begin any more, and tell."""
         now_s = self._loop.time()
-        if self._presses and now_s - self._presses[0].heard_s > MOST_WAIT_S:
-            self._refuse("the press before was dropped: the arm was not ready in time", "")
-            while self._presses and now_s - self._presses[0].heard_s > MOST_WAIT_S:
-                self._presses.popleft()
+        while self._presses and self._presses[0].is_up and now_s - self._presses[0].heard_s > MOST_WAIT_S:
+            if self._presses.popleft().velocity:
+                self._report_dropped()
+
+    def _report_dropped(self) -> None:
+        if self._opened is not None:
+            self._send(PressDropped(arm=self._opened.arm, within_s=MOST_WAIT_S))
 
     async def _publish_presses(self) -> None:
         """Tell the arm of the presses that it does not know yet, in their order, once it takes commands."""
         if not self._is_accepted:
             return
+        self._drop_old_presses()
         try:
             while self._presses:
                 press = self._presses[0]
@@ -167,7 +179,7 @@ class Jogger:
 
     async def _publish_press(self, press: _Press) -> None:
         silent_s = self._loop.time() - press.heard_s
-        if not press.velocity or silent_s > (MOST_WAIT_S if press.is_up else WATCHDOG_S):
+        if not press.velocity or (silent_s > WATCHDOG_S and not press.is_up):
             return
         topic = f"{press.jog.arm}/jog"
         if not (press.is_up and press.is_published):
@@ -179,7 +191,7 @@ class Jogger:
             press.is_published = True
             await self._bus.publish(topic, command)
         if press.is_up:
-            await self._bus.publish(topic, {"velocity": [0.0] * len(press.velocity)})
+            await self._bus.publish(topic, {"velocity": [0.0] * len(press.velocity), "age_s": silent_s})
 
     async def _executed(self) -> None:
         """Return when the arm has executed its presses, or has had the time for them."""
@@ -188,10 +200,15 @@ class Jogger:
             return
         is_idle = asyncio.Event()
         goal.on_feedback(lambda _: is_idle.set() if goal.replaceable and not self._presses else None)
-        with suppress(TimeoutError, FlexcellError):
+        try:
             async with asyncio.timeout(MOST_WAIT_S + LEAST_PRESS_S):
                 await goal.accepted()
                 await is_idle.wait()
+        except TimeoutError:
+            self._report_dropped()
+        except FlexcellError:
+            # The goal itself tells why it has ended.
+            return
 
     async def _perform(self, jog: StartJog) -> None:
         goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S, "replaceable": True}
@@ -210,6 +227,16 @@ class Jogger:
     def _on_sent(self, goal: GoalHandle[Any, Any]) -> None:
         self._goal = goal
         goal.on_accepted(self._on_accepted)
+        reported = 0
+
+        def report(feedback: object) -> None:
+            nonlocal reported
+            dropped = int(getattr(feedback, "dropped", 0))
+            while reported < dropped:
+                reported += 1
+                self._report_dropped()
+
+        goal.on_feedback(report)
 
     def _on_accepted(self) -> None:
         self._is_accepted = True

@@ -77,6 +77,13 @@ class JogStatus(msgspec.Struct, frozen=True, kw_only=True, tag="jogging", tag_fi
     held_by: str = ""
 
 
+class PressDropped(msgspec.Struct, frozen=True, kw_only=True, tag="dropped", tag_field="k"):
+    """A press has moved nothing: it was released, and the arm could not begin to move within `within_s` after that."""
+
+    arm: str
+    within_s: float
+
+
 class JogReadiness(msgspec.Struct, frozen=True, kw_only=True, tag="ready", tag_field="k"):
     """Whether an arm can be jogged at once; not ready with a `reason` where its path cannot be checked."""
 
@@ -98,7 +105,10 @@ class RefusedFrame(msgspec.Struct, frozen=True, kw_only=True, tag="refused", tag
 
 
 class PrepareJogging(msgspec.Struct, frozen=True, kw_only=True, tag="prepare", tag_field="k"):
-    """From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop."""
+    """From the page: this arm is shown to be jogged; answered with its readiness, now and after every stop.
+
+    Without a name no arm is shown any more.
+    """
 
     arm: Name
 
@@ -207,6 +217,7 @@ ToPage = (
     | HelpingHandFrame
     | EntriesChanged
     | JogStatus
+    | PressDropped
     | JogReadiness
     | JogBlockFrame
     | RefusedFrame

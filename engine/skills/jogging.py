@@ -35,22 +35,25 @@ _STILL: Vector3 = (0.0, 0.0, 0.0)
 PressTime = Annotated[
     float, msgspec.Meta(ge=0.0, le=1.0, description="Shortest time of the press that this command begins, in seconds")
 ]
-MOST_WAIT_S = 1.0
-"""A press that was released before its path was checked is dropped after so long."""
+CommandAge = Annotated[float, msgspec.Meta(ge=0.0, le=60.0, description="How long ago it was commanded, in seconds")]
+MOST_WAIT_S = 0.3
+"""The longest time from the release of a press to the start of its motion; then it is dropped."""
 
 
 class JogCommand(Message, frozen=True, kw_only=True):
     """The commanded velocity on `<arm>/jog`: rad/s per joint for JogJoints; m/s, then rad/s for JogTool.
 
     With `least_s` it begins a press: once its path is checked the arm moves for at least so long, although a later
-    command says otherwise; presses are executed one after the other. A press that is blocked, or not checked within
-    `MOST_WAIT_S` of its release, is dropped. A press that falls silent without a release ends with the watchdog.
-    `frame` are the axes of this velocity in JogTool, by default those of the goal.
+    command says otherwise; presses are executed one after the other. A press that does not move the arm within
+    `MOST_WAIT_S` of its release is dropped, and counted in the feedback unless it is blocked. A press that falls
+    silent without a release ends with the watchdog. `frame` are the axes of this velocity in JogTool, by default
+    those of the goal. `age_s` is for how long the command has waited on its way.
     """
 
     velocity: tuple[float, ...]
     frame: Axes | None = None
     least_s: PressTime = 0.0
+    age_s: CommandAge = 0.0
 
 
 class JogCollisionOptions(Message, frozen=True, kw_only=True):
@@ -99,17 +102,25 @@ class PrepareJog(Service[JogReady], frozen=True, kw_only=True):
 
 
 class JointJogFeedback(Message, frozen=True, kw_only=True):
-    """The present configuration, radians, and the reason why the motion is limited; empty when it is not."""
+    """The present configuration, radians, and the reason why the motion is limited; empty when it is not.
+
+    `dropped` counts the presses of this goal that were released before the arm could move.
+    """
 
     joints: tuple[float, ...]
     held_by: str = ""
+    dropped: int = 0
 
 
 class ToolJogFeedback(Message, frozen=True, kw_only=True):
-    """The present pose of the tool centre point, and the reason why the motion is limited; empty when it is not."""
+    """The present pose of the tool centre point, and the reason why the motion is limited; empty when it is not.
+
+    `dropped` counts the presses of this goal that were released before the arm could move.
+    """
 
     pose: Pose
     held_by: str = ""
+    dropped: int = 0
 
 
 class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_only=True):

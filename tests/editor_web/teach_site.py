@@ -20,7 +20,7 @@ from editor_web.teaching import jogging
 from engine.bus import SkillBus
 from engine.bus.json_bus import CLI_HOLDER
 from engine.cell.open_cell import OpenCell
-from engine.document.cell import load_cell
+from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
 from engine.messages import JointState
 from engine.project.session import Session
@@ -67,15 +67,25 @@ class TeachSite:
     elsewhere: a page that a busy machine keeps from speaking for a second has not let go of its arm for good.
     """
 
-    def __init__(self, *, host: str, project: Path, triggers: tuple[Trigger, ...] = (), view: bool = False) -> None:
+    def __init__(
+        self,
+        *,
+        host: str,
+        project: Path,
+        triggers: tuple[Trigger, ...] = (),
+        view: bool = False,
+        cell: Cell | None = None,
+        warm: bool = True,
+    ) -> None:
         self.project = project
-        self._host, self._triggers, self._view = host, triggers, view
+        self._host, self._triggers, self._view, self._warm = host, triggers, view, warm
         self.loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self.loop.run_forever, name="teach site")
         self._open = AsyncExitStack()
         self._parts: tuple[OpenCell, Session, Dashboard] | None = None
         (project / "behaviors" / "cells").mkdir(parents=True, exist_ok=True)
         (project / "behaviors" / "cells" / "taught.yaml").write_text(CELL, encoding="utf-8")
+        self._cell = cell or load_cell(project / "behaviors" / "cells" / "taught.yaml")
 
     @property
     def bus(self) -> SkillBus:
@@ -228,9 +238,7 @@ class TeachSite:
     async def _up(self) -> None:
         enter = self._open.enter_async_context
         journal = self._open.enter_context(Journal.open(self.project / ".flexcell"))
-        cell = OpenCell(
-            load_cell(self.project / "behaviors" / "cells" / "taught.yaml"), store_path=str(self.project / "cell.db")
-        )
+        cell = OpenCell(self._cell, store_path=str(self.project / "cell.db"))
         await enter(cell)
         hand = HelpingHand(
             cell.bus,
@@ -245,6 +253,8 @@ class TeachSite:
             dashboard(session, token_file=self.project / "tokens", host=self._host, cell_view=self._view, shadows=False)
         )
         self._parts = cell, session, running
+        if not self._warm:
+            return
         # The first step loads what looks ahead of the arm.
         await self.bus.send_goal(StepTool(step_m=(0.0, 0.0, 0.005)), to="left", holder=CLI_HOLDER).result()
         await self.go_home()

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
 import json
 import re
 from pathlib import Path
+
+import pytest
 
 import hatch_build
 
@@ -38,6 +41,23 @@ def test_its_unit_tests_pass() -> None:
 def test_the_built_page_is_current() -> None:
     """Else run `python hatch_build.py`."""
     assert hatch_build.DIGEST.read_text(encoding="ascii") == hatch_build.source_digest()
+
+
+def test_packages_that_a_link_leads_to_are_never_emptied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`npm ci` empties the folder that it finds, wherever that is."""
+    source, elsewhere = tmp_path / "frontend", tmp_path / "elsewhere"
+    source.mkdir()
+    elsewhere.mkdir()
+    (source / "package-lock.json").write_text("{}", encoding="utf-8")
+    (source / "node_modules").symlink_to(elsewhere)
+    called: list[tuple[str, ...]] = []
+    monkeypatch.setattr(hatch_build, "SOURCE", source)
+    monkeypatch.setattr(hatch_build, "npm", lambda *arguments: called.append(arguments))
+    with pytest.raises(RuntimeError, match=r"is a link to .*elsewhere.*: remove the link"):
+        hatch_build.install()
+    (elsewhere / ".lock-digest").write_text(hashlib.sha256(b"{}").hexdigest(), encoding="ascii")
+    hatch_build.install()
+    assert called == []
 
 
 def test_it_passes_its_linter() -> None:

@@ -70,6 +70,9 @@ class JogMotions:
         self._bus: SkillBus | None = None
         self._blocks: Topic[JogBlock] | None = None
         self._hiding: asyncio.TimerHandle | None = None
+        self._preparing = asyncio.Lock()
+        self._preparations = 0
+        self._latest_prepared = 0
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills under the arm's name."""
@@ -90,15 +93,24 @@ class JogMotions:
     async def _prepare(self, request: PrepareJog) -> JogReady:
         del request
         clock = self._runner.clock
-        start_s = clock.now_s()
-        guard = self._guard(JogCollisionOptions(), lambda velocity, _: velocity, lambda joints: joints[None] * 0.0)
-        if guard is not None:
-            try:
-                await guard.open()
-            except FlexcellError as error:
-                raise SkillFailed(error.message, where=self._runner.name, hint=error.hint) from error
-            await guard.close()
+        start_s, before = clock.now_s(), self._preparations
+        async with self._preparing:
+            # One that began after this request serves it too.
+            if self._latest_prepared <= before:
+                self._preparations += 1
+                await self._open_once()
+                self._latest_prepared = self._preparations
         return JogReady(waited_s=clock.now_s() - start_s)
+
+    async def _open_once(self) -> None:
+        guard = self._guard(JogCollisionOptions(), lambda velocity, _: velocity, lambda joints: joints[None] * 0.0)
+        if guard is None:
+            return
+        try:
+            await guard.open()
+        except FlexcellError as error:
+            raise SkillFailed(error.message, where=self._runner.name, hint=error.hint) from error
+        await guard.close()
 
     async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointJogFeedback]) -> JointMotionResult:
         runner = self._runner
@@ -115,7 +127,8 @@ class JogMotions:
         )
 
         def publish_feedback() -> None:
-            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
+            held_by = guard.held_by if guard else ""
+            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=held_by, dropped=run.dropped))
 
         ended = await self._jog("joint_velocity", run, guard, handle, publish_feedback)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
@@ -137,7 +150,8 @@ class JogMotions:
         run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, to_command=to_command, guard=guard)
 
         def publish_feedback() -> None:
-            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
+            held_by = guard.held_by if guard else ""
+            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=held_by, dropped=run.dropped))
 
         ended = await self._jog("tool_twist", run, guard, handle, publish_feedback)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)

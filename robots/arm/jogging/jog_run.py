@@ -96,6 +96,11 @@ class JogRun:
         """The axes of the velocity that is commanded now; None for those of the goal."""
         return self._presses.current.frame if self._presses.current is not None else None
 
+    @property
+    def dropped(self) -> int:
+        """How many presses were released before the arm could move along them."""
+        return self._presses.dropped
+
     def look(self) -> None:
         """Resend the velocity before the watchdog expires, and end the stream at its deadline."""
         if self._velocity:

@@ -32,6 +32,11 @@ class Press:
     moving_since_s: float | None = None
     blocked: bool = False
 
+    @property
+    def is_untold(self) -> bool:
+        """Whether nothing would tell that it has moved nothing."""
+        return self.moving_since_s is None and self.least_s > 0.0 and self.released_s is not None and not self.blocked
+
     def over_s(self, watchdog_s: float) -> float:
         """Return when it ends if nothing else is heard."""
         if self.released_s is None:
@@ -53,6 +58,8 @@ class PressQueue:
     def __init__(self, watchdog_s: float) -> None:
         self._watchdog_s = watchdog_s
         self._presses: deque[Press] = deque()
+        self.dropped = 0
+        """How many were released before the arm could move, and were not blocked."""
 
     @property
     def current(self) -> Press | None:
@@ -61,23 +68,24 @@ class PressQueue:
 
     def take(self, command: JogCommand, now_s: float) -> None:
         """Begin, continue or release a press."""
+        command_s = now_s - command.age_s
         last = self._presses[-1] if self._presses else None
         is_held = last is not None and last.released_s is None
         if last is not None and is_held and (command.least_s > 0.0 or not any(command.velocity)):
-            last.released_s, is_held = now_s, False
+            last.released_s, is_held = command_s, False
         if not any(command.velocity):
             return
         if last is not None and is_held:
-            last.velocity, last.frame, last.heard_s, last.blocked = command.velocity, command.frame, now_s, False
+            last.velocity, last.frame, last.heard_s, last.blocked = command.velocity, command.frame, command_s, False
             return
         self._presses.append(
-            Press(velocity=command.velocity, frame=command.frame, least_s=command.least_s, heard_s=now_s)
+            Press(velocity=command.velocity, frame=command.frame, least_s=command.least_s, heard_s=command_s)
         )
 
     def advance(self, now_s: float) -> Press | None:
         """Leave the presses that are over, and return the one under way."""
         while self._presses and now_s >= self._presses[0].over_s(self._watchdog_s):
-            self._presses.popleft()
+            self.dropped += self._presses.popleft().is_untold
         return self.current
 
     def due_s(self) -> float | None:

@@ -2,127 +2,25 @@
 
 from __future__ import annotations
 
-import asyncio
 import random
-from collections.abc import AsyncGenerator
-from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
 
-from editor_web.teaching.jogging import LEAST_PRESS_S, WATCHDOG_S, Jogger
-from editor_web.teaching.teaching_messages import JogStatus, RefusedFrame, StartJog
+from editor_web.teaching.jogging import LEAST_PRESS_S
+from editor_web.teaching.teaching_messages import StartJog
 from engine.bus import GoalStatus
-from engine.bus.json_bus import CLI_HOLDER, LocalJsonBus
-from engine.skills.jogging import StepJoints
-from robots.control.generators.damped_inverse import joint_velocity
-from robots.port import Array
-from tests.robots.fake_port import FakeStream
-from tests.robots.panda_arm import panda_kinematics
-from tests.robots.workspace.fake_cell import FakeCell, fake_cell
+from engine.bus.json_bus import CLI_HOLDER
+from engine.skills.jogging import MOST_WAIT_S, StepJoints
+from tests.editor_web.teaching.jogged_arm import REPEAT_S, STEP_S, Jogged, Press, jogged, least
 
-STEP_S, REPEAT_S = 0.005, 0.04
 M_S, RAD_S = 0.04, 0.15
 PRESSES, SEED = 100, 7
 HOLDS_S = (0.0, 0.01, 0.06, 0.13)
-PAUSES_S = (0.0, 0.02, 0.1)
-STRAIGHT = 0.99
-
-
-@dataclass(frozen=True)
-class Press:
-    """A key: what it jogs and how fast, and how long it is down."""
-
-    jog: StartJog
-    velocity: tuple[float, ...]
-    hold_s: float = 0.0
-
-    @property
-    def axis(self) -> int:
-        """The number of the axis or joint."""
-        return int(np.argmax(np.abs(self.velocity)))
-
-    def along(self, joints: Array, change: Array) -> float:
-        """Return how far a change of the joints goes this way, in metres or radians; 0 if it goes another way."""
-        if self.jog.space == "joints":
-            done, told = change, np.array(self.velocity)
-        else:
-            pose, jacobian = panda_kinematics().tool_pose_and_jacobian(joints)
-            # The base of the arm is not turned in the world.
-            axes = pose.rotation if self.jog.frame == "tool" else np.eye(3)
-            told = np.concatenate((axes @ self.velocity[:3], axes @ self.velocity[3:]))
-            done = jacobian @ change
-        length = float(np.linalg.norm(done))
-        straight = float(done @ told) / max(1e-12, length * float(np.linalg.norm(told)))
-        return length if straight > STRAIGHT else 0.0
-
-
-@dataclass
-class Jogged:
-    """An arm without inertia that a page jogs."""
-
-    cell: FakeCell
-    jogger: Jogger
-    told: list[JogStatus | RefusedFrame]
-    log: list[Array]
-
-    async def press(self, press: Press) -> None:
-        """Hold the key down as the page does."""
-        await self.jogger.begin(press.jog)
-        await self.jogger.go(press.velocity)
-        left_s = press.hold_s
-        while left_s > 0.0:
-            await self.wait(min(REPEAT_S, left_s))
-            left_s -= REPEAT_S
-            await self.jogger.go(press.velocity)
-        await self.jogger.release()
-
-    async def wait(self, time_s: float) -> None:
-        await self.cell.bus.clock.sleep(time_s)
-
-    def gone(self, press: Press) -> float:
-        """How far the arm has gone the way of a press, in metres or radians."""
-        return sum(press.along(before, after - before) for before, after in pairwise(self.log))
-
-    @property
-    def refusals(self) -> list[str]:
-        return [message.message for message in self.told if isinstance(message, RefusedFrame)]
-
-
-@asynccontextmanager
-async def jogged() -> AsyncGenerator[Jogged]:
-    async with fake_cell() as cell:
-        told: list[JogStatus | RefusedFrame] = []
-        jogger = Jogger(LocalJsonBus(cell.bus), taken={}, send=told.append)
-        log = [cell.port.sample().position_rad.copy()]
-        moving = asyncio.create_task(follow(cell, log))
-        try:
-            yield Jogged(cell, jogger, told, log)
-        finally:
-            await jogger.rest()
-            moving.cancel()
-
-
-async def follow(cell: FakeCell, log: list[Array]) -> None:
-    """Move the arm as it is told, until its watchdog expires, and log its joints."""
-    count, silent_s = 0, 0.0
-    while True:
-        await cell.bus.clock.sleep(STEP_S)
-        stream = cell.port.motion
-        if not isinstance(stream, FakeStream) or stream.ended or not stream.sent:
-            count = 0
-            continue
-        silent_s = silent_s + STEP_S if len(stream.sent) == count else stream.ages_s[-1]
-        count = len(stream.sent)
-        if silent_s > WATCHDOG_S:
-            continue
-        joints, told = log[-1], np.array(stream.sent[-1])
-        if len(told) == 6:
-            told = joint_velocity(panda_kinematics().tool_pose_and_jacobian(joints)[1], told)
-        log.append(joints + told * STEP_S)
-        cell.port.lead_to(tuple(log[-1].tolist()))
+# As fast as fingers are, and faster than the arm may follow.
+PAUSES_S, HASTE_S = (0.1, 0.12, 0.2), (0.0, 0.02)
 
 
 def any_press(random_: random.Random) -> Press:
@@ -142,41 +40,86 @@ def opposite(press: Press) -> Press:
     return Press(press.jog, tuple(-value + 0.0 for value in press.velocity), press.hold_s)
 
 
-@pytest.mark.virtual
-async def test_none_of_a_hundred_changes_of_direction_is_lost() -> None:
-    """Of axis, sign, frame and mode: every press is executed in its turn, its way, and for its shortest time."""
-    random_ = random.Random(SEED)
+def there_and_back(random_: random.Random) -> list[Press]:
+    """Seeded presses after which the arm is where it was, so that it stays far from everything."""
     presses: list[Press] = []
     while len(presses) < PRESSES:
         first = any_press(random_)
         if not presses or presses[-1].axis != first.axis:
-            # There and back, so that the arm stays far from everything.
             presses += [first, opposite(first)]
+    return presses
+
+
+def executed(arm: Jogged, presses: Sequence[Press]) -> list[float]:
+    """Return how far the arm has gone for each press, in their order; fails where it goes as no press says."""
+    gone = [0.0] * len(presses)
+    now = 0
+    for before, after in pairwise(arm.log):
+        change = after - before
+        if not change.any():
+            continue
+        while not presses[now].along(before, change):
+            now += 1
+            assert now < len(presses), "the arm goes another way than any key says"
+        gone[now] += presses[now].along(before, change)
+    return gone
+
+
+@pytest.mark.virtual
+async def test_none_of_a_hundred_changes_of_direction_is_lost() -> None:
+    """Of axis, sign, frame and mode: every press is executed in its turn, its way, and for its shortest time."""
+    random_ = random.Random(SEED)
+    presses = there_and_back(random_)
     async with jogged() as arm:
         for press in presses:
             await arm.press(press)
             await arm.wait(random_.choice(PAUSES_S))
         await arm.wait(2.0 * LEAST_PRESS_S)
-        log, refusals = arm.log, arm.refusals
-    assert refusals == []
-    gone = [0.0] * len(presses)
-    now = 0
-    for before, after in pairwise(log):
-        change = after - before
-        if not change.any():
-            continue
-        if not presses[now].along(before, change):
-            now += 1
-        far = presses[now].along(before, change)
-        assert far > 0.0, f"after press {now} of {len(presses)} the arm goes another way than any key says"
-        gone[now] += far
+        gone = executed(arm, presses)
+    assert (arm.refusals, arm.dropped) == ([], 0)
     short = [k for k, (far, press) in enumerate(zip(gone, presses, strict=True)) if far < least(press)]
     assert short == [], f"{len(short)} presses moved too little: {[(presses[k], gone[k]) for k in short]}"
 
 
-def least(press: Press) -> float:
-    """The least way of a press, but for two periods of the log."""
-    return (LEAST_PRESS_S - 2.0 * STEP_S) * float(np.linalg.norm(press.velocity))
+@pytest.mark.virtual
+async def test_of_presses_that_come_too_fast_each_is_executed_or_reported_and_nothing_moves_long_after_the_last() -> (
+    None
+):
+    random_ = random.Random(SEED)
+    taps = [replace(press, hold_s=0.0) for press in there_and_back(random_) if press.jog.space == "tool"]
+    async with jogged() as arm:
+        for tap in taps:
+            await arm.press(tap)
+            await arm.wait(random_.choice(HASTE_S))
+        released_s = arm.cell.bus.clock.now_s()
+        await arm.wait(3.0)
+        gone = executed(arm, taps)
+        last_s = arm.moved_s[-1]
+    # Two the same way are one motion, where those between them are dropped.
+    moved = sum(round(far / (LEAST_PRESS_S * tap.speed)) for far, tap in zip(gone, taps, strict=True))
+    assert (moved + arm.dropped, arm.dropped > 0) == (len(taps), True)
+    assert last_s < released_s + MOST_WAIT_S + LEAST_PRESS_S + 2.0 * STEP_S
+
+
+@pytest.mark.virtual
+async def test_a_stick_that_comes_back_to_its_middle_begins_a_press_of_its_own() -> None:
+    """The deadman button of the gamepad is held all the while, so the page tells of one press only."""
+    random_ = random.Random(SEED)
+    flicks = [press for press in there_and_back(random_) if press.jog == UP.jog]
+    flicks = [flick for before, flick in pairwise(flicks) if flick.velocity != before.velocity]
+    async with jogged() as arm:
+        await arm.jogger.begin(UP.jog)
+        for flick in flicks:
+            await arm.jogger.go(flick.velocity)
+            await arm.wait(REPEAT_S)
+            await arm.jogger.go((0.0,) * 6)
+            await arm.wait(0.12)
+        await arm.jogger.release()
+        await arm.wait(2.0 * LEAST_PRESS_S)
+        gone = executed(arm, flicks)
+    assert (arm.refusals, arm.dropped) == ([], 0)
+    assert len(flicks) > 10
+    assert [k for k, (far, flick) in enumerate(zip(gone, flicks, strict=True)) if far < least(flick)] == []
 
 
 UP = Press(StartJog(arm="left", space="tool"), (0.0, 0.0, M_S, 0.0, 0.0, 0.0))
@@ -216,22 +159,43 @@ async def test_another_goal_takes_the_arm_while_nothing_is_pressed_and_not_befor
 
 
 @pytest.mark.virtual
-async def test_a_press_waits_a_second_for_its_check_and_no_longer() -> None:
-    """Whoever has let go of a key is not surprised by it later."""
+@pytest.mark.parametrize("is_open", [True, False])
+async def test_nothing_begins_to_move_long_after_its_release_and_the_page_says_so(is_open: bool) -> None:
+    """Whoever has let go of a key is not surprised by it later; whether the goal is open, or opens for this press."""
     async with jogged() as arm:
+        if is_open:
+            await arm.press(SIDE)
+            await arm.wait(0.3)
+        arm.cell.planner.silent_s = MOST_WAIT_S - 0.1
         await arm.press(UP)
-        await arm.wait(0.3)
-        gone = arm.gone(UP)
-        arm.cell.planner.silent_s = 0.25
-        await arm.press(SIDE)
         await arm.wait(0.6)
-        assert arm.gone(SIDE) >= least(SIDE)
+        assert (arm.gone(UP) >= least(UP), arm.dropped) == (is_open, int(not is_open))
         arm.cell.planner.silent_s = 9.0
+        gone, moved = arm.gone(UP), len(arm.moved_s)
         await arm.press(UP)
         await arm.wait(1.1)
         arm.cell.planner.silent_s = 0.0
         await arm.wait(1.0)
-        assert arm.gone(UP) == gone
+        assert (arm.gone(UP), len(arm.moved_s)) == (gone, moved)
+        assert arm.dropped == 1 + int(not is_open)
+
+
+@pytest.mark.virtual
+async def test_what_is_said_of_a_dropped_press_does_not_end_the_next() -> None:
+    """A refusal would: the page lets go of what it holds."""
+    async with jogged() as arm:
+        await arm.press(SIDE)
+        await arm.wait(0.3)
+        arm.cell.planner.silent_s = 0.5
+        await arm.press(UP)
+        await arm.wait(0.1)
+        await arm.jogger.begin(SIDE.jog)
+        for _ in range(30):
+            await arm.jogger.go(SIDE.velocity)
+            await arm.wait(REPEAT_S)
+            arm.cell.planner.silent_s = 0.0
+        assert (arm.dropped, arm.refusals, arm.jogger.arm) == (1, [], "left")
+        assert arm.gone(SIDE) > 0.5 * REPEAT_S * 30 * M_S
 
 
 @pytest.mark.virtual

@@ -17,6 +17,7 @@ import type {
   PreviewTaught,
   PlayBody,
   PlaybackResult,
+  PressDropped,
   PushToolBody,
   RefusedFrame,
   SaveCapture,
@@ -51,6 +52,8 @@ export interface TeachStore {
   readonly heldBy: string
   /** Whether an arm can be jogged at once, of those that this page has asked to prepare. */
   readonly readiness: Dict<JogReadiness>
+  /** The latest press that has moved nothing; undefined from the next press on. */
+  readonly dropped: PressDropped | undefined
   /** What the jogged arm stands before; undefined for nothing. */
   readonly block: JogBlockFrame | undefined
   readonly refused: Readonly<Partial<Record<RefusedFrame['what'], RefusedFrame>>>
@@ -68,6 +71,7 @@ const NOTHING: TeachStore = {
   jogging: '',
   heldBy: '',
   readiness: {},
+  dropped: undefined,
   block: undefined,
   refused: {},
 }
@@ -85,6 +89,12 @@ export function sendToServer(message: TeachingMessage): void {
 export function clearTeachRefusal(what: RefusedFrame['what']): void {
   const { [what]: _, ...others } = useTeach.getState().refused
   useTeach.setState({ refused: others })
+}
+
+/** Take away what is said of the press before. */
+export function forgetJogWords(): void {
+  clearTeachRefusal('jog')
+  useTeach.setState({ dropped: undefined })
 }
 
 /** Forget what the arm stood before: its directions out were of other axes. */
@@ -135,7 +145,7 @@ class Connection {
     }
     opened.onclose = () => {
       if (this.socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', readiness: {}, block: undefined, isPreviewing: false })
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', readiness: {}, dropped: undefined, block: undefined, isPreviewing: false })
       this.retry = setTimeout(() => this.open(), RETRY_MS)
     }
   }
@@ -166,6 +176,9 @@ function take(message: TeachingFrame): void {
       break
     case 'ready':
       useTeach.setState({ readiness: { ...before.readiness, [message.arm]: message } })
+      break
+    case 'dropped':
+      useTeach.setState({ dropped: message })
       break
     case 'block':
       useTeach.setState({ block: message.first ? message : undefined })

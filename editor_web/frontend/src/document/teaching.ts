@@ -184,6 +184,11 @@ function valueAt(curve: Curve, time_s: number): number {
   return v0 + ((v1 - v0) * (time_s - t0)) / (t1 - t0)
 }
 
+/** What is said of a press that has moved nothing. */
+export function droppedWords(within_s: number): string {
+  return `The press was dropped: the arm could not move within ${within_s} s of its release. Hold it for longer.`
+}
+
 /** What is said while a jog key is held: whether the arm moves already, else what it waits for. */
 export function heldWords(mode: string | undefined, activity: string | undefined): string {
   if (mode === 'jogging') return 'It moves while this is held'

@@ -48,13 +48,32 @@ def test_a_released_press_that_is_blocked_or_not_checked_in_time_is_dropped() ->
     queue.take(JogCommand(velocity=STILL), 0.01)
     assert at(queue, 0.01 + MOST_WAIT_S - 0.01) == UP
     assert at(queue, 0.01 + MOST_WAIT_S) is None
+    assert queue.dropped == 1
     queue.take(press(LEFT), 1.0)
     current = queue.advance(1.0)
     assert current is not None
     current.blocked = True
     assert at(queue, 1.05) == LEFT
     queue.take(JogCommand(velocity=STILL), 1.06)
-    assert at(queue, 1.06) is None
+    # A block is told of otherwise.
+    assert (at(queue, 1.06), queue.dropped) == (None, 1)
+
+
+def test_what_a_command_has_waited_on_its_way_counts() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 1.0)
+    queue.take(JogCommand(velocity=STILL, age_s=0.2), 1.0)
+    assert (at(queue, 0.8 + MOST_WAIT_S - 0.01), at(queue, 0.8 + MOST_WAIT_S)) == (UP, None)
+
+
+def test_a_press_that_has_moved_the_arm_is_not_dropped() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    current = queue.advance(0.0)
+    assert current is not None
+    current.moving_since_s = 0.02
+    queue.take(JogCommand(velocity=STILL), 0.03)
+    assert (at(queue, 0.5), queue.dropped) == (None, 0)
 
 
 @pytest.mark.parametrize("least_s", [0.0, LEAST_S])

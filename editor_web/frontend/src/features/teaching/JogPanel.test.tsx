@@ -1,5 +1,5 @@
 /** The jog panel: every press of every kind of input is told from its beginning to its end; waiting and blocks are said. */
-import { act, fireEvent, screen } from '@testing-library/react'
+import { act, cleanup, fireEvent, screen } from '@testing-library/react'
 import { afterEach, beforeEach, expect, it, vi } from 'vitest'
 import { armInfo, live, server, session, show } from '../../../testing/page'
 import type { FakeSocket } from '../../../testing/server'
@@ -141,6 +141,25 @@ it('waits visibly until the arm is prepared, and again after a stop', () => {
   socket.tell({ k: 'ready', arm: 'left', ready: false, reason: 'the planning process does not start' })
   expect(state).toHaveTextContent('the planning process does not start')
   expect(button([2, 1])).not.toHaveAttribute('aria-disabled')
+})
+
+it('says that a press was dropped until the next one, and lets go of nothing', () => {
+  const socket = prepared()
+  const state = screen.getByRole('status', { name: 'State of jogging' })
+  fireEvent.pointerDown(button([2, 1]), { pointerId: 1, button: 0 })
+  const held = socket.sent.length
+  socket.tell({ k: 'dropped', arm: 'left', within_s: 0.3 })
+  expect(state).toHaveTextContent('could not move within 0.3 s of its release')
+  expect(socket.sent).toHaveLength(held)
+  fireEvent.pointerUp(button([2, 1]), { pointerId: 1, button: 0 })
+  fireEvent.pointerDown(button([2, -1]), { pointerId: 1, button: 0 })
+  expect(state).not.toHaveTextContent('dropped')
+})
+
+it('lets the server prepare nothing any more once it is hidden', () => {
+  const socket = prepared()
+  cleanup()
+  expect(socket.sent.at(-1)).toEqual({ k: 'prepare', arm: '' })
 })
 
 it('says what the arm stands before, how near, and which ways lead out, until it goes free', () => {

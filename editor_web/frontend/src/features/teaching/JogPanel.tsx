@@ -8,6 +8,7 @@ import type { ArmInfo, ArmLive } from '../../api/types'
 import {
   blockWords,
   degrees,
+  droppedWords,
   heldWords,
   jogVelocity,
   rollPitchYaw,
@@ -49,6 +50,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   const [stepDeg, setStepDeg] = useState('5')
   const now = useTeach((s) => lookup(s.now, arm.name))
   const refusal = useTeach((s) => s.refused.jog)
+  const dropped = useTeach((s) => (s.dropped?.arm === arm.name ? droppedWords(s.dropped.within_s) : ''))
   const heldBy = useTeach((s) => s.heldBy)
   const steps = useSteps()
   const jog = useJog(arm.name, space, frame)
@@ -213,7 +215,12 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
       <Text size="sm" c="dimmed" mih="1.5em" role="status" aria-label="State of jogging">
         {refusal
           ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
-          : stands || heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}
+          : dropped ||
+            stands ||
+            heldBy ||
+            steps.problem ||
+            obstacle ||
+            (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}
       </Text>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (

@@ -1,6 +1,6 @@
 /** Hold-to-run: an arm goes as long as something is held, and the server hears of it all the while. */
 import { useCallback, useEffect, useRef, useState } from 'react'
-import { clearTeachRefusal, sendToServer, useTeach } from '../../api/teaching'
+import { forgetJogWords, sendToServer, useTeach } from '../../api/teaching'
 import type { Frame, Space } from '../../document/teaching'
 
 /** Two of these may be lost before the arm's own watchdog brings it to rest. */
@@ -31,7 +31,7 @@ export function useJog(arm: string, space: Space, frame: Frame): Jog {
   const hold = useCallback(
     (what: string, velocity: () => readonly number[] | undefined) => {
       letGo()
-      clearTeachRefusal('jog')
+      forgetJogWords()
       sendToServer({ k: 'jog', arm, space, frame })
       const go = () => {
         const now = velocity()

@@ -14,7 +14,9 @@ export function usePreparedJog(arm: string): PreparedJog {
   const isOff = useDisabledReason() !== undefined
   const readiness = useTeach((s) => lookup(s.readiness, arm))
   useEffect(() => {
-    if (!isOff) sendToServer({ k: 'prepare', arm })
+    if (isOff) return
+    sendToServer({ k: 'prepare', arm })
+    return () => sendToServer({ k: 'prepare', arm: '' })
   }, [arm, isOff])
   // A press tries again what could not be prepared, and tells why it fails.
   const isPrepared = readiness !== undefined && (readiness.ready || readiness.reason !== '')
