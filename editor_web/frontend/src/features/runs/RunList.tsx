@@ -20,13 +20,13 @@ export interface RunListProps {
 
 export function RunList({ current, href, onOpen, limit }: RunListProps) {
   const runs = useLive((s) => s.runs)
-  const isTold = useLive((s) => s.epoch !== '')
+  const isKnown = useLive((s) => s.epoch !== '')
   return (
     <nav aria-label="Runs">
       <Text component="h2" fz="0.75rem" fw={600} mx="2xs" mb="2xs" c="dimmed">
         Runs
       </Text>
-      {isTold && runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
+      {isKnown && runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
       <List listStyleType="none">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
