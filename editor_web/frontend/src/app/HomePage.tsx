@@ -39,7 +39,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
         {role === 'operator' && <TourInvitation />}
         <InterruptedHere onResumed={onOpenRun} />
         {runs.length === 0 ? (
-          <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
+          role !== '' && <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
         ) : (
           <Box style={{ overflowX: 'auto' }} role="region" tabIndex={0} aria-label="Table of the latest runs">
             <Table verticalSpacing={7} highlightOnHover miw={420}>

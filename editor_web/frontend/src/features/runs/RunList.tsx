@@ -20,12 +20,13 @@ export interface RunListProps {
 
 export function RunList({ current, href, onOpen, limit }: RunListProps) {
   const runs = useLive((s) => s.runs)
+  const isKnown = useLive((s) => s.epoch !== '')
   return (
     <nav aria-label="Runs">
       <Text component="h2" fz="0.75rem" fw={600} mx="2xs" mb="2xs" c="dimmed">
         Runs
       </Text>
-      {runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
+      {isKnown && runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
       <List listStyleType="none">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
@@ -45,7 +46,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
 }
 
 function runText(run: RunView): string {
-  return isActive(run) ? runWords(run) : `${runWords(run)}, ${duration(run.duration_s)}`
+  return isActive(run) ? runWords(run) : `${runWords(run)}, ${duration(run.duration_s).replace(' ', '\u00a0')}`
 }
 
 /** The file name without its ending. */
