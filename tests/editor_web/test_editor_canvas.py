@@ -246,7 +246,7 @@ def test_one_goes_into_containers_and_out_again_by_mouse_and_keyboard(browser: B
         page.keyboard.press("o")
         expect(card(page, "root/both/left")).to_have_count(0)
         expect(card(page, "root/both")).to_have_accessible_name(
-            "Concurrent both, 2 nodes inside; finished to rest, odd to bad"
+            "Concurrency both, 2 nodes inside; finished to rest, odd to bad"
         )
         page.keyboard.press("Enter")
         expect(crumb).to_have_text("shiftboth")

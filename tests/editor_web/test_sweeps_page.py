@@ -31,7 +31,7 @@ def test_a_sweep_is_made_watched_and_a_failing_run_of_it_opened(
             page.get_by_label("What is varied", exact=True).fill("parameters.luck")
             expect(page.get_by_label("Greatest value of parameters.luck")).to_have_value("1")
             require_accessible(page, "the form of a sweep")
-            page.get_by_role("button", name="Make and start").press("Enter")
+            page.get_by_role("button", name="Create and start").press("Enter")
             expect(page.get_by_role("heading", name="luck", exact=True)).to_be_visible(timeout=GUARD_MS)
             expect(page.get_by_role("progressbar", name="12 of 12 runs are done")).to_be_visible(timeout=GUARD_MS)
             curve = page.get_by_role("img", name="Success rate after each of 12 runs")

@@ -127,8 +127,8 @@ def test_poses_and_a_motion_are_taught_by_buttons_and_move_a_behavior(browser: B
         expect(move.get_by_role("button", name="Stop (Escape)")).to_have_count(0)
         page.keyboard.press("ArrowLeft")
         expect(said).to_have_text(f"capture {first + 1} of left: joints")
-        move.get_by_role("button", name="Let it float").click()
-        expect(move.get_by_role("button", name="Hold itself")).to_be_visible()
+        move.get_by_role("button", name="Float").click()
+        expect(move.get_by_role("button", name="Hold position")).to_be_visible()
         page.keyboard.down("ArrowRight")
         expect(said).to_have_text("left is being recorded")
         began = np.array(site.joints().position_rad)
@@ -139,8 +139,8 @@ def test_poses_and_a_motion_are_taught_by_buttons_and_move_a_behavior(browser: B
         site.call(site.rested())
         page.keyboard.up("ArrowRight")
         expect(said).to_have_text(f"capture {first + 2} of left: dmp")
-        move.get_by_role("button", name="Hold itself").click()
-        expect(move.get_by_role("button", name="Let it float")).to_be_visible()
+        move.get_by_role("button", name="Hold position").click()
+        expect(move.get_by_role("button", name="Float")).to_be_visible()
         for nth, name in enumerate(("here", "there", "sweep")):
             saved(save(page, first + nth, name))
         here, there = entry_joints(site, "here"), entry_joints(site, "there")
@@ -212,10 +212,10 @@ def test_an_arm_is_jogged_by_joints_with_the_keyboard(browser: Browser, site: Te
         shown = move.get_by_role("list", name="Joints").get_by_role("listitem").last
         # The page hears of no changes below 1e-4 rad, and rounds to a tenth of a degree.
         until(page, lambda: abs(shown_deg(shown) - np.degrees(site.joints().position_rad[6])) < 0.06)
-        move.get_by_role("button", name="Let it float").click()
+        move.get_by_role("button", name="Float").click()
         expect(move.get_by_role("status", name="State of jogging")).to_have_text("it floats: let it hold itself first")
-        move.get_by_role("button", name="Hold itself").click()
-        expect(move.get_by_role("button", name="Let it float")).to_be_visible()
+        move.get_by_role("button", name="Hold position").click()
+        expect(move.get_by_role("button", name="Float")).to_be_visible()
 
 
 def test_an_entry_is_played_back_only_after_a_yes_and_escape_stops_it(browser: Browser, site: TeachSite) -> None:

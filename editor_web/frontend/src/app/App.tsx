@@ -119,7 +119,7 @@ export function App() {
       <AppShell.Navbar py={14} px="xs" bg="var(--surface)" style={{ gap: 18, overflowY: 'auto' }}>
         <ViewBoundary name="Behaviors">
           <BehaviorList
-            behaviors={behaviors.value ?? []}
+            behaviors={behaviors.value}
             current={behaviorId}
             href={behaviorHref}
             onOpen={(id) => open(behaviorHref(id))}

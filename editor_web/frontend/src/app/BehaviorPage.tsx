@@ -16,6 +16,7 @@ import { Panel } from '../components/Panel'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { proposedRequest } from '../document/plannedPaths'
 import { isActive, isFailed } from '../document/runState'
+import { hasErrors, startObstacle } from '../document/startObstacle'
 import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
@@ -85,7 +86,8 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const hasView = hasCellView(session)
   const { layout, arrangement, setLayout } = useArrangement(hasView)
   const isConnected = useLive((s) => s.connection === 'live')
-  const obstacle = isConnected ? obstacleOf(behavior, active, session) : 'The server does not answer'
+  const stop = useLive((s) => s.stop)
+  const obstacle = isConnected ? startObstacle(behavior, active, session, stop) : 'The server does not answer'
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
   const commands = useCommands(run, node?.path)
   const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
@@ -349,17 +351,6 @@ function focusFirst(id: string): boolean {
   const button = document.querySelector<HTMLElement>(`#${id} .mantine-Button-root`)
   button?.focus()
   return button !== null
-}
-
-function hasErrors(behavior: BehaviorView): boolean {
-  return behavior.findings.some((finding) => finding.severity === 'error')
-}
-
-function obstacleOf(behavior: BehaviorView, active: readonly RunView[], session: SessionBody | undefined): string | undefined {
-  if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
-  if (hasErrors(behavior)) return 'The document has errors; see its problems'
-  if (behavior.fit.obstacle) return `It cannot be started here: ${behavior.fit.obstacle}`
-  return active.some((run) => run.behavior === behavior.id) ? 'A run of this behavior is active' : undefined
 }
 
 function placeOf(session: SessionBody | undefined, active: readonly RunView[]): string {

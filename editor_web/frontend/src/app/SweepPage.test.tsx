@@ -247,7 +247,7 @@ it('makes and starts a sweep of what the form says', async () => {
   live()
   const user = show(<SweepsPage onOpen={opened} />)
   await user.click(await screen.findByRole('button', { name: 'New sweep' }))
-  await user.click(screen.getByRole('button', { name: 'Make and start' }))
+  await user.click(screen.getByRole('button', { name: 'Create and start' }))
   expect(screen.getByRole('alert')).toHaveTextContent('Choose a behavior')
   await user.selectOptions(
     await screen.findByRole('combobox', { name: 'Behavior' }),
@@ -259,10 +259,10 @@ it('makes and starts a sweep of what the form says', async () => {
   await user.click(screen.getByLabelText('What is varied'))
   await user.paste('parameters.speed')
   expect(screen.getByLabelText('Least value of parameters.speed')).toHaveValue('0.1')
-  await user.click(screen.getByRole('button', { name: 'Make and start' }))
+  await user.click(screen.getByRole('button', { name: 'Create and start' }))
   expect(await screen.findByRole('alert')).toHaveTextContent('the cell has no part')
   server().on('POST /sweeps', { id: 'behaviors/sweeps/transfer_2.yaml' })
-  await user.click(screen.getByRole('button', { name: 'Make and start' }))
+  await user.click(screen.getByRole('button', { name: 'Create and start' }))
   await waitFor(() => expect(opened.mock.calls).toEqual([['/sweeps/behaviors/sweeps/transfer_2.yaml']]))
   expect(server().bodies('POST /sweeps').at(-1)).toEqual({
     id: 'behaviors/sweeps/transfer_2.yaml',

@@ -12,6 +12,8 @@ interface Edit {
 
 export interface CommitSliderProps {
   readonly label: string
+  /** Whose it is, for screen readers, where a page has several. */
+  readonly of?: string
   readonly value: number
   readonly min: number
   readonly max: number
@@ -25,7 +27,7 @@ export interface CommitSliderProps {
   readonly hint?: string | undefined
 }
 
-export function CommitSlider({ label, value, min, max, step, words, onCommit, obstacle, hint }: CommitSliderProps) {
+export function CommitSlider({ label, of, value, min, max, step, words, onCommit, obstacle, hint }: CommitSliderProps) {
   const id = useId()
   const [edit, setEdit] = useState<Edit>()
   /** One after the other, so that the value put last is the one that holds. */
@@ -65,6 +67,7 @@ export function CommitSlider({ label, value, min, max, step, words, onCommit, ob
         step={step}
         value={shown}
         disabled={obstacle !== undefined}
+        aria-label={of === undefined ? undefined : `${label} of ${of}`}
         aria-valuetext={words(shown)}
         onChange={(event) => setEdit({ value: Number(event.currentTarget.value), isOpen: true })}
         onPointerUp={commit}

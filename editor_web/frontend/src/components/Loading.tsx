@@ -1,6 +1,10 @@
 /** A view whose code may still be on its way, and may fail. */
-import { Suspense, type ReactNode } from 'react'
+import { Text } from '@mantine/core'
+import { Suspense, useEffect, useState, type ReactNode } from 'react'
 import { ViewBoundary } from './ViewBoundary'
+
+/** What is there sooner says nothing: a word that comes and goes at once disturbs more than it tells. */
+const SILENT_MS = 500
 
 interface LoadingProps {
   /** What a failure calls it. */
@@ -13,7 +17,20 @@ interface LoadingProps {
 export function Loading({ name, of = '', children }: LoadingProps) {
   return (
     <ViewBoundary name={name} of={of}>
-      <Suspense fallback={<div role="status" aria-label="Loading" />}>{children}</Suspense>
+      <Suspense fallback={<Waiting />}>{children}</Suspense>
     </ViewBoundary>
+  )
+}
+
+function Waiting() {
+  const [isLate, setLate] = useState(false)
+  useEffect(() => {
+    const timer = setTimeout(() => setLate(true), SILENT_MS)
+    return () => clearTimeout(timer)
+  }, [])
+  return (
+    <Text role="status" aria-label="Loading" p="md" c="dimmed">
+      {isLate && 'Loading …'}
+    </Text>
   )
 }

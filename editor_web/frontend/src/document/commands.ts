@@ -10,7 +10,7 @@ export const LEVEL_WORDS: Record<Level, string> = {
   off: 'every outcome asks',
   low: 'outcomes that require low, high or full ask',
   high: 'outcomes that require high or full ask',
-  full: 'only outcomes that require full ask',
+  full: 'only outcomes that require full autonomy ask',
 }
 
 export type Command =

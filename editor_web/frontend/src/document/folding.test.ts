@@ -30,7 +30,7 @@ const ROOT = graphNode('root', { kind: 'machine', title: '', children: [LEFT, RI
 it('draws a folded container as one box that tells how much is inside', () => {
   const drawn = folded(ROOT, new Set(['root/right']))
   expect(flatten(drawn).map((node) => node.path)).toEqual(['root', 'root/left', 'root/left/grasp', 'root/left/lift', 'root/right'])
-  expect(drawn.children[1]?.title).toBe('Concurrent of 2')
+  expect(drawn.children[1]?.title).toBe('Concurrency of 2')
   expect(drawn.children[0]).toBe(LEFT)
   expect(drawn.initial).toBe('left')
 })

@@ -92,7 +92,7 @@ function resetStep(stop: CellStop): RecoveryStep {
   if (stop.parts === 'absent') return { ...step, state: 'none', words: 'only a simulation can do this' }
   return stop.parts === 'reset'
     ? { ...step, state: 'done', words: 'at their initial poses' }
-    : { ...step, state: 'open', words: 'if the next run begins anew' }
+    : { ...step, state: 'open', words: 'if the next run starts from the beginning' }
 }
 
 function releaseStep(stop: CellStop): RecoveryStep {

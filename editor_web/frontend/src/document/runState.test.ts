@@ -102,6 +102,11 @@ it('is a failure where it was no success', () => {
   ).toEqual([true, true, false, false])
 })
 
+it('says why a run failed without the name of the run', () => {
+  const cause = 'run pick-20261126-132717-148b7b07 at root/open: left/gripper is in use'
+  expect(runStateOf(run({ status: 'errored', cause })).reason).toBe('root/open: left/gripper is in use')
+})
+
 it('asks only for what waits for agreement', () => {
   const waiting = [asks('root/a'), asks('root/b', { reasons: ['lock'] })]
   expect(requestsOf(control({ waiting })).map((each) => each.path)).toEqual(['root/a'])

@@ -47,8 +47,15 @@ export function runStateOf(run: RunFacts | undefined, control: ControlView | nul
     case 'interrupted':
       return { word: 'Interrupted', look: 'warning', reason: 'its engine ended before the run' }
     default:
-      return isFailed(run) ? { word: 'Failed', look: 'failed', reason: run.cause ?? '' } : { word: 'Succeeded', look: 'done', reason: '' }
+      return isFailed(run)
+        ? { word: 'Failed', look: 'failed', reason: ownCause(run.cause ?? '') }
+        : { word: 'Succeeded', look: 'done', reason: '' }
   }
+}
+
+/** A cause without the name of its run, which is as long as a line and is the run that is shown. */
+function ownCause(cause: string): string {
+  return cause.replace(/^run \S+ at /, '')
 }
 
 /** The word, with the outcome where it says more: `Failed: no_part`. */

@@ -22,7 +22,7 @@ export function kindLabel(kind: string): string {
     case 'machine':
       return 'State machine'
     case 'concurrency':
-      return 'Concurrent'
+      return 'Concurrency'
     case 'behavior':
       return 'Behavior'
     case 'state':

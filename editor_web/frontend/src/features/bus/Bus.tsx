@@ -113,7 +113,7 @@ export function Bus({ session }: BusProps) {
     if (kind === 'parameters' && parameter) return <ParameterView key={name} {...shared} facts={parameter} />
     const skill = known.skills.find((each) => each.name === name)
     if (skill) return <SkillView key={name} {...shared} facts={skill} />
-    return <Empty title={`${name} is not there any more`}>Its device has left the bus.</Empty>
+    return <Empty title={`${name} is no longer there`}>Its device has left the bus.</Empty>
   }
 
   return (

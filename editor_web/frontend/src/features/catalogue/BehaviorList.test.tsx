@@ -110,3 +110,10 @@ it('offers a viewer no new one, and says what to do in an empty project', () => 
   expect(screen.queryByRole('button', { name: 'New' })).toBeNull()
   expect(screen.getByText('Put a YAML document below behaviors/.')).toBeVisible()
 })
+
+it('says nothing of an empty project before the server has told the behaviors', () => {
+  live()
+  show(<BehaviorList behaviors={undefined} current={undefined} href={() => ''} onOpen={opened} onMade={undefined} />)
+  expect(screen.getByRole('textbox', { name: 'Find a behavior' })).toBeVisible()
+  expect(screen.queryByText('No behaviors')).toBeNull()
+})

@@ -13,7 +13,8 @@ import classes from './BehaviorList.module.css'
 import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
-  readonly behaviors: readonly BehaviorSummary[]
+  /** Undefined until the server has told them. */
+  readonly behaviors: readonly BehaviorSummary[] | undefined
   readonly current: string | undefined
   readonly href: (id: string) => string
   readonly onOpen: (id: string) => void
@@ -26,7 +27,7 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
   const runs = useLive((s) => s.runs)
   const active = new Set(runs.filter(isActive).map((run) => run.behavior))
   const query = text.trim().toLowerCase()
-  const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(query))
+  const found = (behaviors ?? []).filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(query))
   const others = found.filter((behavior) => !fits(behavior))
   return (
     <nav aria-label="Behaviors">
@@ -46,7 +47,7 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
         value={text}
         onChange={(event) => setText(event.currentTarget.value)}
       />
-      {found.length === 0 && (
+      {behaviors && found.length === 0 && (
         <Empty title={behaviors.length === 0 ? 'No behaviors' : 'None matches'}>
           {behaviors.length === 0 ? 'Put a YAML document below behaviors/.' : 'Try another word.'}
         </Empty>

@@ -57,7 +57,7 @@ it('says what way an answer is about, and whether the 3D view shows it', () => {
   expect(question).toHaveTextContent("left: 3.25 s for 1.24 m of the tool's path, found by RRTConnect in 0.12 s")
   expect(question).toHaveTextContent('shown in the 3D view')
   socket.tell(snapshot({ ...told, robots: { left: robot() } }))
-  expect(question).toHaveTextContent('not in the 3D view any more')
+  expect(question).toHaveTextContent('no longer in the 3D view')
 })
 
 it('lets a viewer read the question, and answer nothing', () => {

@@ -98,7 +98,7 @@ function Planned({ path, isRow }: { readonly path: string; readonly isRow: boole
       <IconRoute size={15} color="var(--active)" style={{ flex: 'none' }} aria-hidden />
       <Text span inherit truncate={isRow}>
         <strong>{plan.robot}</strong>: {planWords(plan)};{' '}
-        {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}
+        {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'no longer in the 3D view'}
       </Text>
     </Group>
   ))

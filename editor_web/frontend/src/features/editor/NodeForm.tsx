@@ -93,7 +93,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       {isMachine(parent?.kind ?? '') && parent && <OutcomeForm node={node} parent={parent} />}
       {node.kind === 'concurrency' && <RulesForm node={node} />}
       {isMachine(node.kind) && (
-        <BeginForm node={node} onSet={(child) => void perform(`Begin with ${child}`, [{ edit: 'set_initial', path: node.path, child }])} />
+        <BeginForm node={node} onSet={(child) => void perform(`Start with ${child}`, [{ edit: 'set_initial', path: node.path, child }])} />
       )}
       {(isTreePart(node.kind) || node.kind === 'concurrency') && node.children.length > 1 && <OrderForm node={node} />}
       <SettingsForm node={node} />
@@ -126,10 +126,10 @@ function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => 
   if (node.children.length === 0) return null
   return (
     <Section title="Machine">
-      <FormLine label="Begins with">
+      <FormLine label="Starts with">
         <NativeSelect
           size="xs"
-          aria-label="Begins with"
+          aria-label="Starts with"
           value={node.initial ?? ''}
           data={[
             ...(node.children.some((child) => child.name === node.initial)

@@ -79,7 +79,7 @@ const WORDS: Readonly<Record<string, string>> = {
   enter: 'Go in',
   open: 'Open or close in place',
   connect: 'Connect an outcome…',
-  initial: 'Begin with it',
+  initial: 'Start with it',
   note: 'Note',
   alike: 'Select all that run the same',
 }

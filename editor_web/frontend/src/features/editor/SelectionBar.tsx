@@ -79,7 +79,7 @@ export function SelectionBar() {
 
 function Bar({ children }: { children: ReactNode }) {
   return (
-    <Paper withBorder shadow="md" p={2} role="toolbar" aria-label="Chosen nodes">
+    <Paper withBorder shadow="md" p={2} role="toolbar" aria-label="Selected nodes">
       <Group gap={0} wrap="nowrap">
         {children}
       </Group>

@@ -211,7 +211,7 @@ export async function makeInitial(): Promise<void> {
   const chosen = chosenOf(editor())
   const parent = chosen && nodeOf(rootOf(editor()), parentPath(chosen.path))
   if (!chosen || !parent || !isMachine(parent.kind)) return
-  await perform(`Begin with ${chosen.name}`, [{ edit: 'set_initial', path: parent.path, child: chosen.name }])
+  await perform(`Start with ${chosen.name}`, [{ edit: 'set_initial', path: parent.path, child: chosen.name }])
 }
 
 /** Move the chosen nodes by a step of the keyboard: elsewhere on the canvas, or among the children where their order counts. */

@@ -18,7 +18,7 @@ export async function layOutAnew(): Promise<void> {
     showEditorNotice('It is laid out already')
     return
   }
-  await perform('Lay out', [{ edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) }])
+  await perform('Auto-layout', [{ edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) }])
 }
 
 function positionedBelow(node: EditNode): readonly string[] {

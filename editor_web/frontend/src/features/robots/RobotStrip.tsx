@@ -79,6 +79,7 @@ function Robot({ robot }: { robot: RobotLive }) {
       </Group>
       <CommitSlider
         label="Speed"
+        of={name}
         min={5}
         max={100}
         step={5}

@@ -45,7 +45,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
 }
 
 function runText(run: RunView): string {
-  return isActive(run) ? runWords(run) : `${runWords(run)}, ${duration(run.duration_s)}`
+  return isActive(run) ? runWords(run) : `${runWords(run)}, ${duration(run.duration_s).replace(' ', '\u00a0')}`
 }
 
 /** The file name without its ending. */

@@ -89,7 +89,7 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
                 </Confirm>
               )}
               <Button size="xs" variant="default" disabled={!isReleased} onClick={() => onBehavior(run.behavior)}>
-                Start anew
+                Restart
               </Button>
             </>
           }

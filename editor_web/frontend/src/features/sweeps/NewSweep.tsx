@@ -169,7 +169,7 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
         )}
         <Group gap="xs">
           <Button size="xs" type="submit" aria-disabled={isSending || undefined} data-disabled={isSending}>
-            {step || 'Make and start'}
+            {step || 'Create and start'}
           </Button>
           <Button
             size="xs"

@@ -102,7 +102,7 @@ export function OtherResults({ others }: { readonly others: readonly Undescribed
         {others.map((each) => (
           <Box component="li" py="sm" style={{ borderBottom: '1px solid var(--line)' }} key={each.subject}>
             <Note>
-              {each.behavior || 'A version that is not here any more'} <Mono isQuiet>{each.subject.slice(0, 12)}</Mono>
+              {each.behavior || 'A version that is no longer here'} <Mono isQuiet>{each.subject.slice(0, 12)}</Mono>
             </Note>
             <Note isQuiet>
               {each.runs} {each.runs === 1 ? 'run' : 'runs'}, {each.successes} succeeded

@@ -245,7 +245,7 @@ function toolRows(now: ArmLive | undefined): readonly Row[] {
   return TOOL_AXES.map((name, axis) => {
     const value = axis < 3 ? pose[axis] : turns[axis - 3]
     if (value === undefined) return { name, value: '–' }
-    return { name, value: axis < 3 ? `${(value * 1000).toFixed(1)} mm` : `${degrees(value).toFixed(1)}°` }
+    return { name, value: axis < 3 ? `${tenths(value * 1000)} mm` : `${tenths(degrees(value))}°` }
   })
 }
 
@@ -255,7 +255,7 @@ function jointRows(arm: ArmInfo, now: ArmLive | undefined): readonly Row[] {
     const [lower = 0, upper = 0] = [arm.lower_rad[at], arm.upper_rad[at]]
     const limits = `from ${degrees(lower).toFixed(0)}° to ${degrees(upper).toFixed(0)}°`
     if (value === undefined) return { name: `J${at + 1}`, value: '–', limits }
-    return { name: `J${at + 1}`, value: `${degrees(value).toFixed(1)}°`, share: shareOfRange(value, lower, upper), limits }
+    return { name: `J${at + 1}`, value: `${tenths(degrees(value))}°`, share: shareOfRange(value, lower, upper), limits }
   })
 }
 
@@ -296,4 +296,9 @@ function JogKey({ row, axis, direction, jog, press, obstacle }: JogKeyProps) {
       <Icon size={16} aria-hidden />
     </HoldButton>
   )
+}
+
+/** One decimal place, and never a negative zero, whose sign would change while the arm rests. */
+function tenths(value: number): string {
+  return (Math.round(value * 10) / 10 + 0).toFixed(1)
 }

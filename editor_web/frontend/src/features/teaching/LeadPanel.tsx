@@ -49,7 +49,7 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
     <Part label="Lead by hand">
       <Group gap="xs">
         <CommandButton
-          label={isFloating ? 'Hold itself' : 'Let it float'}
+          label={isFloating ? 'Hold position' : 'Float'}
           hint={isFloating ? 'The arm holds its position' : 'The arm compensates gravity and can be guided by hand'}
           icon={<IconFeather size={15} aria-hidden />}
           isPressed={isFloating}
@@ -57,7 +57,7 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
           onPress={float}
         />
         <Text span size="sm" c="dimmed">
-          {isFloating ? 'It floats: lead it by hand.' : 'It holds itself.'}
+          {isFloating ? 'The arm floats: lead it by hand.' : 'The arm holds its position.'}
         </Text>
       </Group>
       {canPush && <PushPad arm={arm.name} obstacle={off ?? (isFloating ? undefined : 'let it float first')} onProblem={setProblem} />}
@@ -121,7 +121,7 @@ function PushPad({
         </Text>
         <Slider size="sm" min={2} max={40} value={force_n} onChange={setForce} label={null} thumbProps={{ 'aria-labelledby': id }} />
         <Text size="sm" c="dimmed" mt="xs">
-          Here you are the hand: the arrows push at the tool of the simulated arm, along the axes of the world.
+          Instead of a hand, the arrows push the tool of the simulated arm along the axes of the world.
         </Text>
       </Box>
     </Group>
