@@ -37,6 +37,7 @@ class ArmRecovery(msgspec.Struct, frozen=True, kw_only=True):
     `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an
     operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped.
     `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for.
+    `problem` is why the last step with this arm failed, empty if it did not.
     """
 
     name: str
@@ -47,6 +48,7 @@ class ArmRecovery(msgspec.Struct, frozen=True, kw_only=True):
     home: str
     home_names: tuple[str, ...]
     at_home: bool
+    problem: str
 
 
 class CellStop(msgspec.Struct, frozen=True, kw_only=True):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager
 from typing import Literal
 
 import msgspec
@@ -43,6 +44,7 @@ class StopRecovery:
         self._bus = LocalJsonBus(cell.bus)
         self._kept: dict[str, str] = {}
         self._stopped_at: dict[str, tuple[float, ...]] = {}
+        self._problems: dict[str, str] = {}
         self._are_parts_reset = False
         self._of_stop = 0
         stops.when_changed(self._take_up)
@@ -84,9 +86,9 @@ class StopRecovery:
         part = self._part(arm)
         if not part:
             raise ControlError("the arm holds nothing", where=arm, hint="nothing has to be kept or released")
-        await self._attach(arm, part)
-        self._kept[arm] = part
-        self._stops.notify()
+        async with self._step(arm):
+            await self._attach(arm, part)
+            self._kept[arm] = part
 
     async def release_part(self, arm: str) -> None:
         """Open the tool of an arm, which drops what it holds; in the planning scene the part is free again.
@@ -99,11 +101,11 @@ class StopRecovery:
         kind, part = self._kind(arm), self._part(arm)
         if kind is None or kind.release_goal is None:
             raise ControlError("its tool cannot be opened from here", where=arm, hint="open it at the robot")
-        await self._perform(f"{arm}/{kind.name}/{kind.release_goal.skill_name()}", kind.release_goal)
-        self._kept.pop(arm, None)
-        if part and part != UNKNOWN_PART and self._has("cell/detach_part"):
-            await self._bus.call("cell/detach_part", {"part": part})
-        self._stops.notify()
+        async with self._step(arm):
+            await self._perform(f"{arm}/{kind.name}/{kind.release_goal.skill_name()}", kind.release_goal)
+            self._kept.pop(arm, None)
+            if part and part != UNKNOWN_PART and self._has("cell/detach_part"):
+                await self._bus.call("cell/detach_part", {"part": part})
 
     async def go_home(self, arm: str) -> None:
         """Move an arm to its home configuration around obstacles, slowly; a part that it holds moves with it.
@@ -123,12 +125,12 @@ class StopRecovery:
         if not self._has(f"{arm}/move_free"):
             raise ControlError("this cell plans no paths around obstacles", where=arm, hint="jog the arm home")
         part = self._part(arm)
-        if part:
-            await self._attach(arm, part)
         speed = _HELD_SPEED if part else _HOME_SPEED
         goal = {"target": {"joints": joints}, "options": {"speed": speed}, "adaptation": {"patience_s": 0.0}}
-        await self._perform(f"{arm}/move_free", goal)
-        self._stops.notify()
+        async with self._step(arm):
+            if part:
+                await self._attach(arm, part)
+            await self._perform(f"{arm}/move_free", goal)
 
     async def reset_parts(self) -> None:
         """Put the parts of a simulation back to their initial poses, also those that an arm holds.
@@ -160,7 +162,7 @@ class StopRecovery:
         if record is None:
             return
         if record.first != self._of_stop:
-            self._kept, self._stopped_at, self._are_parts_reset = {}, {}, False
+            self._kept, self._stopped_at, self._problems, self._are_parts_reset = {}, {}, {}, False
             self._of_stop = record.first
         for name, device in record.devices.items():
             joints = self._joints(name)
@@ -186,6 +188,7 @@ class StopRecovery:
             home=home,
             home_names=self._home_names(name),
             at_home=bool(home) and _farthest_rad(joints, at) < _AT_HOME_RAD,
+            problem=self._problems.get(name, ""),
         )
 
     def _parts(self) -> Literal["open", "reset", "absent"]:
@@ -257,6 +260,18 @@ class StopRecovery:
         if end.status is not GoalStatus.SUCCEEDED:
             cause = describe_cause(end.cause) if end.cause is not None else f"it ended as {end.status.value}"
             raise ControlError(cause, where=address, hint="jog the arm clear, then try again")
+
+    @asynccontextmanager
+    async def _step(self, arm: str) -> AsyncGenerator[None]:
+        """Keep why a step failed, so that every page says it, and tell the pages of its end."""
+        self._problems.pop(arm, None)
+        try:
+            yield
+        except FlexcellError as error:
+            self._problems[arm] = str(error)
+            raise
+        finally:
+            self._stops.notify()
 
     def _require_stopped(self, where: str) -> None:
         if not self._stops.latched:

@@ -169,8 +169,12 @@ class PlanningWorker:
         )
         try:
             await worker.process.start()
-            async with asyncio.timeout(_START_S):
-                ready = await asyncio.shield(worker.process.ask(WarmUpRequest()).answer)
+            try:
+                async with asyncio.timeout(_START_S):
+                    ready = await asyncio.shield(worker.process.ask(WarmUpRequest()).answer)
+            except TimeoutError as error:
+                message = f"the planner was not ready within {_START_S:g} s of its start"
+                raise RobotError(message, hint="try again when the computer has less to do") from error
             assert isinstance(ready, PlannerReady)
         except BaseException:
             # After any failure, including cancellation, no process may remain.

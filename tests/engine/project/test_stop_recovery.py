@@ -134,6 +134,11 @@ async def test_a_way_home_that_fails_says_why_and_what_to_do(tmp_path: Path) -> 
         with pytest.raises(ControlError, match="the table is in between") as failed:
             await session.recovery.go_home("left")
         assert failed.value.hint == "jog the arm clear, then try again"
+        (now,) = (await _state(session)).arms
+        assert "the table is in between" in now.problem
+        arm.blocked = ""
+        await session.recovery.go_home("left")
+        assert (await _state(session)).arms[0].problem == ""
 
 
 async def test_a_cell_without_a_home_says_what_is_missing(tmp_path: Path) -> None:

@@ -34,9 +34,19 @@ export class ServerError extends Error {
   }
 }
 
+/** `fetch`, which says in plain words that nobody answers: what browsers say then is each one's own. */
+export async function reach(url: string, init?: RequestInit): Promise<Response> {
+  try {
+    return await fetch(url, init)
+  } catch (error) {
+    if (error instanceof TypeError) throw new Error('The server does not answer', { cause: error })
+    throw error
+  }
+}
+
 /** Ask `/api/v1…` and look only at whether the server still knows this page. */
 export async function request(path: string, init?: RequestInit): Promise<Response> {
-  const response = await fetch(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
+  const response = await reach(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
   if (response.status === 401) loseSession()
   return response
 }

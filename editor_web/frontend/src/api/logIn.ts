@@ -1,5 +1,5 @@
 /** Logging in again from within the page. */
-import { api } from './client'
+import { api, reach } from './client'
 
 const PROBLEMS = new Map([
   [401, 'That token is not valid for this server.'],
@@ -8,7 +8,7 @@ const PROBLEMS = new Map([
 
 /** Exchange a token for a session; returns why that was refused, empty when it was not. */
 export async function logIn(token: string): Promise<string> {
-  const response = await fetch('/login', { method: 'POST', body: new URLSearchParams({ token }) })
+  const response = await reach('/login', { method: 'POST', body: new URLSearchParams({ token }) })
   if (!response.ok) return PROBLEMS.get(response.status) ?? `The server refused it: ${response.status} ${response.statusText}`
   await api.session()
   return ''

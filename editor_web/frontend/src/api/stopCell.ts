@@ -1,6 +1,6 @@
 /** STOP of the cell: by the stop process, which needs no engine, and by the engine, both at the same time. */
 import { isAcknowledged, isAtRest, newStop, type StopPath, type StopProgress } from '../document/stopReport'
-import { api, wordsOf } from './client'
+import { api, reach, wordsOf } from './client'
 import { lastHeard } from './live'
 import { useSession } from './session'
 import { useStop } from './stopStore'
@@ -89,7 +89,7 @@ function bodyWith(token: string): string {
 
 /** A request that browsers send to another port without asking there first. */
 async function asked(url: string, token: string): Promise<StopStatus> {
-  const response = await fetch(url, {
+  const response = await reach(url, {
     method: 'POST',
     mode: 'cors',
     credentials: 'omit',

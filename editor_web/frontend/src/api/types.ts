@@ -76,7 +76,7 @@ export interface ArmLive {
   readonly tool: ToolLive | null
 }
 
-/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. */
+/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. `problem` is why the last step with this arm failed, empty if it did not. */
 export interface ArmRecovery {
   readonly name: string
   readonly part: string
@@ -86,6 +86,7 @@ export interface ArmRecovery {
   readonly home: string
   readonly home_names: readonly string[]
   readonly at_home: boolean
+  readonly problem: string
 }
 
 /** The arms whose status has changed, at most ten times a second. */

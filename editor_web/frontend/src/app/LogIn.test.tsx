@@ -36,7 +36,7 @@ it('takes a token, and says of a wrong one that it is not valid', async () => {
 
 it.each([
   [new Refusal(429, {}), 'Too many wrong tokens. Wait some seconds, then try again.'],
-  [() => Promise.reject(new TypeError('Failed to fetch')), 'The server does not answer: Failed to fetch'],
+  [() => Promise.reject(new TypeError('Failed to fetch')), 'The server does not answer'],
 ])('says why it was refused otherwise', async (answer, words) => {
   server().on(LOGIN, answer)
   const user = show(<LogIn />)

@@ -52,7 +52,7 @@ function LogInForm() {
     try {
       setProblem(await logIn(token.trim()))
     } catch (error) {
-      setProblem(`The server does not answer: ${wordsOf(error)}`)
+      setProblem(wordsOf(error))
     } finally {
       setAsking(false)
     }

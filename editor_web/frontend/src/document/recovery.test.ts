@@ -12,6 +12,7 @@ const ARM: ArmRecovery = {
   home: 'left_home',
   home_names: ['left_home'],
   at_home: false,
+  problem: '',
 }
 const AT_REST: StoppedDevice = { name: 'left', status: 'at_rest', after_s: 0.42, reason: '' }
 const STOP: CellStop = {

@@ -185,6 +185,15 @@ def test_without_a_clock_planning_takes_no_time() -> None:
     assert run_virtual(scenario()) == 0.0
 
 
+async def test_a_start_that_takes_too_long_says_so_and_leaves_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robots.planning.worker.planning_worker._START_S", 0.0)
+    worker = PlanningWorker()
+    with pytest.raises(RobotError, match=r"the planner was not ready within 0 s of its start \(try again when"):
+        await worker.plan(SHELF)
+    assert not worker.pid
+    await worker.__aexit__()
+
+
 async def test_a_start_goes_on_when_who_waits_for_it_is_cancelled_and_ends_with_the_worker() -> None:
     worker = PlanningWorker()
     worker.start()

@@ -114,7 +114,7 @@ export function HomeStep({ stop, mayOperate }: StepProps) {
   return (
     <>
       {stop.arms.map((arm) => (
-        <ArmRow key={arm.name} arm={arm} words={homeWords(arm)}>
+        <ArmRow key={arm.name} arm={arm} words={homeWords(arm)} problem={command.busy || command.problem ? '' : arm.problem}>
           {command.busy === `home ${arm.name}` && (
             <Button size="xs" variant="default" onClick={command.stop}>
               Stop this motion
@@ -168,10 +168,23 @@ function homeWords(arm: ArmRecovery): string {
   return arm.at_home ? `is at home (${arm.home})` : `is not at home (${arm.home})`
 }
 
-function ArmRow({ arm, words, children }: { readonly arm: ArmRecovery; readonly words: string; readonly children: ReactNode }) {
+interface ArmRowProps {
+  readonly arm: ArmRecovery
+  readonly words: string
+  /** Why the last step with it failed. */
+  readonly problem?: string
+  readonly children: ReactNode
+}
+
+function ArmRow({ arm, words, problem = '', children }: ArmRowProps) {
   return (
     <StepRow label={arm.name} tools={children}>
       <strong>{arm.name}</strong> {words}
+      {problem && (
+        <Text span display="block" size="sm" c="var(--failed)">
+          Failed: {problem}
+        </Text>
+      )}
     </StepRow>
   )
 }

@@ -17,6 +17,7 @@ const ARM: ArmRecovery = {
   home: 'left_home',
   home_names: ['left_home'],
   at_home: false,
+  problem: '',
 }
 const RUN = { id: 'r1', behavior: 'behaviors/shift.yaml', seq: 7, path: 'root/grasp' }
 const led = vi.fn<(where: string) => void>()
@@ -97,6 +98,11 @@ it('jogs an arm in place', async () => {
   expect(screen.getByText('jog panel of left')).toBeVisible()
   await user.click(screen.getByRole('button', { name: 'Open the page Teach' }))
   expect(led).toHaveBeenLastCalledWith('teach')
+})
+
+it('says after a reload why an arm did not go home', () => {
+  guide(stopped({ arms: [{ ...ARM, problem: 'left/move_free: the table is in between' }] }))
+  expect(screen.getByText('Failed: left/move_free: the table is in between')).toBeVisible()
 })
 
 it('says why an arm did not go home, and what to do', async () => {

@@ -51,7 +51,7 @@ export function FailureActions(props: FailureActionsProps) {
   }
 
   return (
-    <Group gap="xs" my="xs" role="group" aria-label="What can be done">
+    <Group gap="xs" role="group" aria-label="What can be done">
       {hasView && (
         <Button {...LOOK} leftSection={<IconCube size={15} aria-hidden />} onClick={() => lookAt(placesOf(failure, Object.keys(robots)))}>
           Show place in 3D

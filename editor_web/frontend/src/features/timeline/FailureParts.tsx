@@ -15,9 +15,8 @@ export interface At {
 }
 
 export function Measured({ values }: { readonly values: readonly MeasuredValue[] }) {
-  if (values.length === 0) return null
   return (
-    <Table w="auto" my="xs" verticalSpacing={3} tabularNums aria-label="Expected against measured">
+    <Table w="auto" verticalSpacing={3} tabularNums aria-label="Expected against measured">
       <Table.Thead>
         <Table.Tr>
           <Table.Th>Quantity</Table.Th>

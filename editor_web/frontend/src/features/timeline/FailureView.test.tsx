@@ -50,8 +50,9 @@ function sections(): Record<string, string[]> {
   const region = within(screen.getByRole('region', { name: 'How the run failed' }))
   const lists = region.getAllByRole('list')
   const titles = region.getAllByRole('heading', { level: 4 })
-  // Without a good run there is no list of what differs from it.
-  const told = titles.filter((title) => title.textContent !== 'Against the last good run')
+  // Without a good run there is no list of what differs from it, and what was measured is a table.
+  const others = ['Against the last good run', 'Expected against measured']
+  const told = titles.filter((title) => !others.includes(title.textContent ?? ''))
   return Object.fromEntries(
     told.map((title, at) => [
       title.textContent ?? '',

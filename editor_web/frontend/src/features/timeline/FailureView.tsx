@@ -78,53 +78,63 @@ interface FailureTextProps {
 function FailureText({ run, failure, page, onShow }: FailureTextProps) {
   const comparison = useLastGoodRun(run.id, true)
   const { links, steps, around, hint } = failure
+  const measured = links.flatMap((link) => link.compared)
   const report = reportOf(run, failure, comparison ?? undefined, location.href)
   return (
-    <Box
-      pos="absolute"
-      inset={0}
-      px="md"
-      py="sm"
-      style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
-      tabIndex={0}
-      role="region"
-      aria-label="How the run failed"
-    >
-      <Flex gap="sm">
-        <IconCircleX size={19} color="var(--failed)" style={{ flex: 'none', marginTop: 2 }} aria-hidden />
-        <Title order={3} size="md">
-          {failure.text}
-        </Title>
-      </Flex>
-      <Measured values={links.flatMap((link) => link.compared)} />
-      {hint && (
-        <Alert role="note" p="xs" my="xs">
-          <strong>What to do: </strong>
-          {hint}
-        </Alert>
-      )}
-      <FailureActions {...page} run={run} failure={failure} report={report} />
-      <SimpleGrid minColWidth="min(100%, 17rem)" autoFlow="auto-fit" spacing="xl" verticalSpacing="xs">
-        {links.length > 0 && (
-          <Section title="Why">
-            <Causes links={links} />
-          </Section>
+    <Flex pos="absolute" inset={0} direction="column">
+      <Box
+        flex={1}
+        mih={0}
+        px="md"
+        pt="xs"
+        style={{ overflow: 'auto', overflowWrap: 'anywhere' }}
+        tabIndex={0}
+        role="region"
+        aria-label="How the run failed"
+      >
+        <Flex gap="sm">
+          <IconCircleX size={19} color="var(--failed)" style={{ flex: 'none', marginTop: 2 }} aria-hidden />
+          <Title order={3} size="md">
+            {failure.text}
+          </Title>
+        </Flex>
+        {hint && (
+          <Alert role="note" p="xs" my="xs">
+            <strong>What to do: </strong>
+            {hint}
+          </Alert>
         )}
-        {steps.length > 0 && (
-          <Section title="Where">
-            <Steps failure={failure} onShow={onShow} />
+        <SimpleGrid minColWidth="min(100%, 17rem)" autoFlow="auto-fit" spacing="xl" verticalSpacing="xs">
+          {measured.length > 0 && (
+            <Section title="Expected against measured">
+              <Measured values={measured} />
+            </Section>
+          )}
+          {links.length > 0 && (
+            <Section title="Why">
+              <Causes links={links} />
+            </Section>
+          )}
+          {steps.length > 0 && (
+            <Section title="Where">
+              <Steps failure={failure} onShow={onShow} />
+            </Section>
+          )}
+          <Section title="Against the last good run">
+            <LastGood comparison={comparison} />
           </Section>
-        )}
-        <Section title="Against the last good run">
-          <LastGood comparison={comparison} />
-        </Section>
-        {around.length > 0 && (
-          <Section title="What happened there">
-            <Around lines={around} onShow={onShow} />
-          </Section>
-        )}
-      </SimpleGrid>
-    </Box>
+          {around.length > 0 && (
+            <Section title="What happened there">
+              <Around lines={around} onShow={onShow} />
+            </Section>
+          )}
+        </SimpleGrid>
+      </Box>
+      {/* Below what scrolls: what can be done is in sight, however low the panel is. */}
+      <Box px="md" py={4} style={{ borderTop: '1px solid var(--line)' }}>
+        <FailureActions {...page} run={run} failure={failure} report={report} />
+      </Box>
+    </Flex>
   )
 }
 
