@@ -136,6 +136,14 @@ class MessageReceived(Event, frozen=True, kw_only=True, tag="received"):
     message: object
 
 
+class MessagePublished(Event, frozen=True, kw_only=True, tag="published"):
+    """A state published a message on a topic."""
+
+    path: str
+    topic: str
+    message: object
+
+
 class NodeDiverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=True):
     """A node was left for `target` without an outcome: by timeout, guard or on_error (`by`)."""
 
@@ -374,6 +382,7 @@ AnyEvent = (
     | GoalResumed
     | ServiceCalled
     | ServiceAnswered
+    | MessagePublished
     | MessageReceived
     | MessageLogged
     | OperatorCommanded

@@ -8,6 +8,7 @@ address of a skill is `<namespace>/<skill_name>`.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any, Generic, TypeVar, get_args, get_origin
 
 import msgspec
@@ -29,6 +30,14 @@ class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknow
         """Return the result type of this skill."""
         return _type_arguments(cls)[0]
 
+    def address(self, to: str) -> str:
+        """Return the bus address of this request to the namespace `to`."""
+        return f"{to}/{self.skill_name()}"
+
+    def data(self) -> object:
+        """Return the fields of this request as plain data."""
+        return msgspec.to_builtins(self)
+
 
 class Service(Skill[R], Generic[R], frozen=True, kw_only=True):
     """A request with a single, immediate response."""
@@ -41,6 +50,36 @@ class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
     def feedback_type(cls) -> Any:
         """Return the type of the feedback messages."""
         return _type_arguments(cls)[1]
+
+
+class NamedService(Service[object], frozen=True, kw_only=True):
+    """A service request given by name and fields; its response is plain data. The bus knows its type."""
+
+    name: str
+    fields: Mapping[str, object]
+
+    def address(self, to: str) -> str:
+        """Return the bus address of this request to the namespace `to`."""
+        return f"{to}/{self.name}"
+
+    def data(self) -> object:
+        """Return the fields."""
+        return self.fields
+
+
+class NamedAction(Action[object, object], frozen=True, kw_only=True):
+    """A goal given by name and fields; its result is plain data. The bus knows its type."""
+
+    name: str
+    fields: Mapping[str, object]
+
+    def address(self, to: str) -> str:
+        """Return the bus address of this goal to the namespace `to`."""
+        return f"{to}/{self.name}"
+
+    def data(self) -> object:
+        """Return the fields."""
+        return self.fields
 
 
 def _type_arguments(cls: type[Any]) -> tuple[Any, ...]:

@@ -117,6 +117,32 @@ class Context(Protocol):
         """Wait for the next message of a topic."""
         ...
 
+    async def latest_data(self, topic: str) -> object:
+        """Return the latest message of a topic of any type as plain data; wait for the first one.
+
+        Raises:
+            BusError: there is no such topic.
+        """
+        ...
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool]) -> object:
+        """Wait for the next message of a topic of any type, as plain data, that meets a condition.
+
+        No message between the call and the answer is missed. The run records that message alone.
+
+        Raises:
+            BusError: there is no such topic.
+        """
+        ...
+
+    async def publish(self, topic: str, message: object) -> None:
+        """Publish plain data on a topic that the cell document declares.
+
+        Raises:
+            BusError: the cell declares no such topic, or the message is not of its type.
+        """
+        ...
+
     async def offer(self, outcome: str) -> None:
         """Return when the operator approves `outcome`, at once when the run's autonomy permits it.
 
@@ -202,8 +228,9 @@ def goal_cause(what: str, goal: Action[Any, Any], end: GoalEnd[Any], *, to: str,
         where: The path of the state.
         kind: The name of the state.
     """
-    skill = goal.skill_name()
-    fallback = Cause(message=_NO_REASON.get(end.status, "the device gave no reason"), where=f"{to}/{skill}")
+    address = goal.address(to)
+    skill = address.rpartition("/")[2]
+    fallback = Cause(message=_NO_REASON.get(end.status, "the device gave no reason"), where=address)
     return wrap_cause(f"{what}: {skill} was {end.status}", end.cause or fallback, where=where, kind=kind)
 
 

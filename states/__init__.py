@@ -6,6 +6,11 @@ The entry point `flexcell.states` exports `CATALOGUE`; add a new state to the li
 from collections.abc import Mapping
 
 from engine.state import State
+from states.bus.call_service import CallService
+from states.bus.check_message import CheckMessage
+from states.bus.publish import Publish
+from states.bus.send_goal import SendGoal
+from states.bus.wait_for_message import WaitForMessage
 from states.cell.expect_part import ExpectPart
 from states.cell.reach import Reach
 from states.cell.withdraw import Withdraw
@@ -57,8 +62,10 @@ from states.vision.detect import Detect
 _STATES: tuple[type[State], ...] = (
     AllowContact,
     Attach,
+    CallService,
     Check,
     CheckHeld,
+    CheckMessage,
     Decide,
     Detach,
     Detect,
@@ -87,11 +94,13 @@ _STATES: tuple[type[State], ...] = (
     PlacePart,
     PlanMotion,
     PressAlongDmp,
+    Publish,
     PutObstacle,
     Reach,
     ReadEntry,
     Recover,
     RemoveObstacle,
+    SendGoal,
     SetCollision,
     SetController,
     SetImpedance,
@@ -101,6 +110,7 @@ _STATES: tuple[type[State], ...] = (
     SetToolFrame,
     SetValue,
     Wait,
+    WaitForMessage,
     Withdraw,
     WriteEntry,
 )

@@ -6,6 +6,7 @@ from engine.bus.handler_signature import expected_signature
 from engine.bus.json_bus import JsonBus
 from engine.bus.lease import Holder, Lease, LeaseTable
 from engine.bus.parameter_server import BusParameter, ParameterServer
+from engine.bus.plain_requests import publish_value, typed_action, typed_service
 from engine.bus.topic import Subscription, Topic, TopicStream
 from engine.skills.goal_end import GoalEnd, GoalStatus
 
@@ -27,4 +28,7 @@ __all__ = [
     "Topic",
     "TopicStream",
     "expected_signature",
+    "publish_value",
+    "typed_action",
+    "typed_service",
 ]

@@ -184,7 +184,7 @@ class SkillBus:
             LeaseRefused: the service commands a resource held by another holder.
             SkillFailed: the handler failed; its error is the cause.
         """
-        address = f"{to}/{request.skill_name()}"
+        address = request.address(to)
         server = self._services.get(address)
         if server is None:
             raise self._no_such_service(address)
@@ -212,7 +212,7 @@ class SkillBus:
             NoSuchSkill: there is no such action.
             LeaseRefused: another holder commands the resource.
         """
-        address = f"{to}/{goal.skill_name()}"
+        address = goal.address(to)
         server = self._actions.get(address)
         if server is None:
             raise self._no_such_service(address)

@@ -11,8 +11,7 @@ import msgspec
 from engine.bus.action import GoalHandle
 from engine.bus.bus import BusEntry, SkillBus
 from engine.bus.lease import Holder
-from engine.errors import BusError
-from engine.skill import Action, Service
+from engine.bus.plain_requests import publish_command, typed_action, typed_service
 from engine.skills.goal_end import GoalEnd
 
 CLI_HOLDER = Holder("cli")
@@ -73,21 +72,7 @@ class LocalJsonBus:
         Raises:
             BusError: there is no such topic, it takes no commands, or the message is invalid.
         """
-        target = self._bus.find_topic(topic)
-        if not target.takes_commands:
-            command_topics = self._bus.command_topics()
-            raise BusError(
-                "this topic takes no commands",
-                where=topic,
-                hint=f"commands are taken on {', '.join(command_topics)}"
-                if command_topics
-                else "no topic of this bus takes commands",
-            )
-        try:
-            typed = msgspec.convert(message, target.kind)
-        except msgspec.ValidationError as error:
-            raise BusError(f"this is not a {target.kind.__name__}: {error}", where=topic) from error
-        target.publish(typed)
+        publish_command(self._bus, topic, message)
 
     async def call(self, address: str, request: object) -> str:
         """Call a service and return its response as JSON.
@@ -96,9 +81,7 @@ class LocalJsonBus:
             BusError: there is no such service, it is an action, the request is invalid, or the call failed.
         """
         namespace, _, _ = address.rpartition("/")
-        typed = self._typed(address, request)
-        if not issubclass(self._bus.request_type(address), Service):
-            raise BusError("this is an action, not a service", where=address, hint="use `flexcell bus goal`")
+        typed = typed_service(self._bus, address, request)
         return _text(await self._bus.call(typed, to=namespace, holder=CLI_HOLDER))
 
     async def perform(
@@ -117,9 +100,7 @@ class LocalJsonBus:
     def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:
         """Send a goal; then await `ended`. Raises as `perform` does."""
         namespace, _, _ = address.rpartition("/")
-        typed = self._typed(address, goal)
-        if not issubclass(self._bus.request_type(address), Action):
-            raise BusError("this is a service, not an action", where=address, hint="use `flexcell bus call`")
+        typed = typed_action(self._bus, address, goal)
         return self._bus.send_goal(typed, to=namespace, holder=CLI_HOLDER)
 
     async def ended(self, handle: GoalHandle[Any, Any]) -> GoalEnd[Any]:
@@ -133,13 +114,6 @@ class LocalJsonBus:
         finally:
             if not any(other is not handle for other in self._bus.goals(CLI_HOLDER.run)):
                 self._bus.leases.release_run(CLI_HOLDER.run)
-
-    def _typed(self, address: str, request: object) -> Any:
-        skill = self._bus.request_type(address)
-        try:
-            return msgspec.convert(request, skill)
-        except msgspec.ValidationError as error:
-            raise BusError(f"this is not a {skill.__name__}: {error}", where=address) from error
 
 
 def _text(message: Any) -> str:

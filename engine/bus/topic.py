@@ -78,8 +78,9 @@ class Topic(Generic[M]):
         self.kind = kind
         self.count = 0
         self.takes_commands = False
-        """Whether this is a command topic, whose messages a server executes; other topics only publish state."""
+        """Whether users may publish on it: its messages are executed, or the cell document opens it to all."""
         self._clock = clock
+        self._problem: Callable[[M], str | None] | None = None
         self._latest: M | None = None
         self._provider: Callable[[], M] | None = None
         self._subscriptions: tuple[Subscription[M], ...] = ()
@@ -120,12 +121,14 @@ class Topic(Generic[M]):
         """Store `message` as the latest and pass it to every subscriber.
 
         Raises:
-            BusError: the message is not of the topic's type.
+            BusError: the message is not of the topic's type, or of what the topic is open for.
         """
         if not isinstance(message, self.kind):
             raise BusError(
                 f"a {type(message).__name__} was published where {self.kind.__name__} is expected", where=self.name
             )
+        if self._problem is not None and (problem := self._problem(message)) is not None:
+            raise BusError(problem, where=self.name)
         self._latest = message
         self.count += 1
         self._stamps_s.append(self._clock.now_s())
@@ -153,6 +156,11 @@ class Topic(Generic[M]):
         """Subscribe as the server that executes the messages; users may publish on such a topic."""
         self.takes_commands = True
         return self.subscribe(callback)
+
+    def open_to_all(self, problem: Callable[[M], str | None]) -> None:
+        """Let users and behaviors publish on this topic; `problem` returns what is wrong with a message."""
+        self.takes_commands = True
+        self._problem = problem
 
     def remove(self, subscription: Subscription[M]) -> None:
         """Remove a subscriber; unknown ones are ignored."""

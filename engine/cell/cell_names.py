@@ -19,11 +19,13 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "part", "person", "camera", "detector", "label", "frame", "arm_frame", "body",
-    "obstacle", "scene_part", "planner",
+    "obstacle", "scene_part", "planner", "topic", "bus_topic", "skill",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`) and `output` (`left/3`, `left/gripper`) belong to a robot,
 `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
-of the cell's view. `body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add."""
+of the cell's view. `body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add.
+`topic` is one that the cell document declares. `bus_topic` is any topic, `skill` any service or action: only an open
+cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -132,6 +134,7 @@ def cell_names(cell: Cell) -> CellNames:
         "part": parts,
         "person": people,
         "camera": frozenset(document.cameras),
+        "topic": frozenset(document.topics),
         "detector": frozenset(detectors),
         "label": frozenset(
             f"{name}/{detector.labels.get(part, part)}" for name, detector in detectors.items() for part in parts

@@ -16,6 +16,7 @@ from typing import Any, Self
 from engine.bus import SkillBus
 from engine.cell.cell_connection import CellConnection, CellConnectionMonitor
 from engine.cell.cell_store import open_cell_store, store_address
+from engine.cell.cell_topics import open_topics
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries_document import load_entries
@@ -183,6 +184,7 @@ class OpenCell:
         if self.document is None:
             self._stack.push_async_callback(self._close_bus)
             return
+        open_topics(self.bus, self.document.document)
         await self._open_store(self.document)
         if self.relay is not None:
             # Before the devices, which get new lines from the relay when all are reconnected.

@@ -15,6 +15,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
+from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -100,6 +101,11 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
         return self.driver if isinstance(self.driver, str) else str(self.driver["kind"])
 
 
+TopicName = Annotated[
+    str, Meta(pattern="^[a-z][a-z0-9_]*(/[a-z0-9_]+)+$", max_length=128, description="Such as `operator/key`")
+]
+
+
 class Jitter(StrictModel, frozen=True, kw_only=True):
     """Maximum random offset of a part in a seeded run, uniform in both directions."""
 
@@ -170,6 +176,10 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     cameras: dict[Name, DepthCamera] = {}
     occupancy: OccupancyMap | None = None
     people: dict[Name, Person] = {}
+    topics: Annotated[
+        dict[TopicName, ParameterSpec],
+        Meta(description="Topics on which everybody may publish a value of the given type"),
+    ] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,6 +223,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)
+    _require_topics(document, source)
     return Cell(document=document, file=file, source=source)
 
 
@@ -315,3 +326,23 @@ def _require_people(document: CellDocument, source: DocumentSource) -> None:
                 where=source.position((*path, "hand_rests")),
                 hint=f"its reach is {least_m:.3f} to {greatest_m:.3f} m",
             )
+
+
+_RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))
+
+
+def _require_topics(document: CellDocument, source: DocumentSource) -> None:
+    devices = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
+    for name, spec in document.topics.items():
+        first = name.partition("/")[0]
+        path: DataPath = ("topics", name)
+        if first in devices or first in _RESERVED_TOPICS:
+            owner = f"{devices[first]} `{first}`" if first in devices else "flexcell"
+            raise DocumentError(
+                f"the topics below `{first}` are those of {owner}",
+                where=source.position(path, of_key=True),
+                hint="name it after who publishes it: operator/key, line/part_ready",
+            )
+        problem = spec.problem(spec.default) if not spec.required else None
+        if problem is not None:
+            raise DocumentError(f"the default of topic `{name}`: {problem}", where=source.position((*path, "default")))

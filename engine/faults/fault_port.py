@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Any, TypeVar
 
 import msgspec
@@ -24,11 +25,16 @@ from engine.skill import Action, Service
 R = TypeVar("R")
 F = TypeVar("F")
 S = TypeVar("S", bound=msgspec.Struct)
+M = TypeVar("M")
 
 
 def kill_process() -> None:
     """End this process at once, as `kill -9` does."""
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def _any(_data: object) -> bool:
+    return True
 
 
 class FaultPort:
@@ -85,7 +91,7 @@ class FaultPort:
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
         """Call a service, unless a fault intervenes; raises the errors of the bus."""
-        address = f"{to}/{request.skill_name()}"
+        address = request.address(to)
         rule = self._due(holder.branch, address)
         if rule is None:
             return await self._inner.call(request, to=to, holder=holder)
@@ -109,7 +115,7 @@ class FaultPort:
         async def read() -> S:
             return await self._inner.latest(topic, kind, holder=holder)
 
-        return await self._read(topic, kind, holder, read)
+        return await self._read(topic, holder, read, partial(self._inner.next_message, topic, kind, holder=holder))
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Wait for the next message of a topic, unless a fault intervenes."""
@@ -117,7 +123,27 @@ class FaultPort:
         async def read() -> S:
             return await self._inner.next_message(topic, kind, holder=holder)
 
-        return await self._read(topic, kind, holder, read)
+        return await self._read(topic, holder, read, read)
+
+    async def latest_data(self, topic: str, *, holder: Holder) -> object:
+        """Return the latest message of a topic, unless a fault intervenes."""
+
+        async def read() -> object:
+            return await self._inner.latest_data(topic, holder=holder)
+
+        return await self._read(topic, holder, read, partial(self._inner.next_data, topic, _any, holder=holder))
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
+        """Wait for the next message of a topic that meets the condition, unless a fault intervenes."""
+
+        async def read() -> object:
+            return await self._inner.next_data(topic, condition, holder=holder)
+
+        return await self._read(topic, holder, read, read, fits=condition)
+
+    def publish(self, topic: str, message: object, *, holder: Holder) -> None:
+        """Publish a message; faults are those of requests and reads."""
+        self._inner.publish(topic, message, holder=holder)
 
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
         """Call back at each new message of a topic; faults of topics apply when a message is read."""
@@ -128,9 +154,17 @@ class FaultPort:
         """Those of what is inside."""
         return self._inner.entries
 
-    async def _read(self, topic: str, kind: type[S], holder: Holder, read: Callable[[], Awaitable[S]]) -> S:
-        again: S | None = self._again.pop((holder.branch, topic), None)
-        if again is not None:
+    async def _read(
+        self,
+        topic: str,
+        holder: Holder,
+        read: Callable[[], Awaitable[M]],
+        read_next: Callable[[], Awaitable[M]],
+        *,
+        fits: Callable[[object], bool] = _any,
+    ) -> M:
+        again: M | None = self._again.pop((holder.branch, topic), None)
+        if again is not None and fits(again):
             return again
         rule = self._due(holder.branch, topic)
         if rule is None:
@@ -143,7 +177,7 @@ class FaultPort:
         if rule.fault.lost is not None:
             await read()
             self._scene.apply(rule, holder.branch, topic, "a message is lost")
-            return await self._inner.next_message(topic, kind, holder=holder)
+            return await read_next()
         return await apply_request_fault(rule, RepeatableRequest(holder.branch, topic, read), self._scene)
 
     def _due(self, path: str, address: str) -> FaultRule | None:

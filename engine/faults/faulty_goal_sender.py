@@ -28,7 +28,7 @@ class RepeatableGoal:
     @property
     def address(self) -> str:
         """`<namespace>/<skill_name>`."""
-        return f"{self.to}/{self.goal.skill_name()}"
+        return self.goal.address(self.to)
 
     def __call__(self) -> Goal:
         """Send it; raises what the bus raises."""

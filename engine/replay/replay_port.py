@@ -47,7 +47,7 @@ class ReplayPort:
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
         """Return the recorded response at its recorded time; raises the recorded error of the bus."""
         self._require_going_on()
-        address = f"{to}/{request.skill_name()}"
+        address = request.address(to)
         recorded = self._requests.take(holder.branch)
         if recorded is None or recorded.ended is None or not isinstance(recorded.end, ServiceAnswered):
             await self._for_ever(holder.branch, f"the answer of {address}")
@@ -60,7 +60,7 @@ class ReplayPort:
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
         """Start the recorded goal; raises the recorded error of the bus."""
         self._require_going_on()
-        address = f"{to}/{goal.skill_name()}"
+        address = goal.address(to)
         recorded = self._requests.take(holder.branch)
         if recorded is None or recorded.ended is None or not isinstance(recorded.end, GoalFinished):
             self.waiting[holder.branch] = f"the end of goal {address}"
@@ -78,6 +78,21 @@ class ReplayPort:
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Return the message that was read here in the recording, at its recorded time."""
+        return _typed(await self._read(topic, holder), kind, topic)
+
+    async def latest_data(self, topic: str, *, holder: Holder) -> object:
+        """Return the message that was read here in the recording."""
+        return decode_nonfinite(await self._read(topic, holder))
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
+        """Return the message that met the condition in the recording, at its recorded time."""
+        return decode_nonfinite(await self._read(topic, holder))
+
+    def publish(self, topic: str, message: object, *, holder: Holder) -> None:
+        """Do nothing: what the run publishes is compared as an event."""
+        self._require_going_on()
+
+    async def _read(self, topic: str, holder: Holder) -> object:
         self._require_going_on()
         recorded = self._requests.take_read(holder.branch, topic)
         if recorded is None:
@@ -88,7 +103,7 @@ class ReplayPort:
         except asyncio.CancelledError:
             self._requests.give_back(recorded)
             raise
-        return _typed(recorded.event.message, kind, topic)
+        return recorded.event.message
 
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
         """Never call back: what was read is recorded, and what was not is not known."""

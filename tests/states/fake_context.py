@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast
 
 import msgspec
@@ -59,6 +59,20 @@ class FakeContext:
         """Give the scripted message."""
         return await self.latest(topic, kind)
 
+    async def latest_data(self, topic: str) -> object:
+        """Give the scripted message."""
+        return msgspec.to_builtins(self._topics[topic])
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool]) -> object:
+        """Give the scripted message."""
+        message = await self.latest_data(topic)
+        assert condition(message)
+        return message
+
+    async def publish(self, topic: str, message: object) -> None:
+        """Remember the message."""
+        self.sent.append((topic, message))
+
     async def offer(self, outcome: str) -> None:
         """Agree at once."""
 
@@ -71,7 +85,7 @@ class FakeContext:
         return 0.5
 
     def _answer(self, request: Any, to: str) -> Any:
-        address = f"{to}/{request.skill_name()}"
+        address = request.address(to)
         self.sent.append((address, request))
         if address not in self.answers:
             raise NoSuchSkill("no such service", where=address)

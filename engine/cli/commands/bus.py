@@ -10,6 +10,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Annotated
 
+import click
 import msgspec
 import typer
 from rich.console import Console
@@ -137,6 +138,28 @@ def publish(
     _until_interrupted(main())
 
 
+@app.command("keys")
+def keys(
+    topic: Annotated[str, typer.Argument(help="Topic of the cell for texts, such as operator/key.")],
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Publish each key that is pressed in this terminal as a value of a topic, until Ctrl-C or Ctrl-D.
+
+    A behavior that waits for the topic reacts to the keys. Without a terminal every character of the input is a key.
+    """
+
+    async def main() -> None:
+        async with _bus(cell, server) as bus:
+            sys.stderr.write(f"each key is published on {topic}; Ctrl-D ends\n")
+            while key := await asyncio.to_thread(_next_key):
+                await bus.publish(topic, {"value": key})
+                sys.stdout.write(f"{key!r}\n")
+                sys.stdout.flush()
+
+    _until_interrupted(main())
+
+
 async def repeat(act: Callable[[], Awaitable[None]], *, rate_hz: float, duration_s: float | None) -> None:
     """Call `act` at a rate; if a call takes too long, the missed calls are skipped."""
     loop = asyncio.get_running_loop()
@@ -195,6 +218,16 @@ async def _bus(cell: Path | None, server: Path) -> AsyncGenerator[JsonBus]:
 
         async with open_cell(load_cell(cell)) as opened:
             yield LocalJsonBus(opened.bus)
+
+
+def _next_key() -> str:
+    """Wait for a key; empty at the end of the input."""
+    if not sys.stdin.isatty():
+        return sys.stdin.read(1)
+    try:
+        return click.getchar()
+    except EOFError:
+        return ""
 
 
 def _until_interrupted(main: object) -> None:

@@ -98,6 +98,7 @@ EVENT_TEXTS: Mapping[str, _Template] = {
     "call": _Template("debug", "called {address}: {request}"),
     "answer": _Template("debug", "call {call} answered {result}"),
     "answer.failed": _Template("warning", "call {call} failed"),
+    "published": _Template("info", "published on {topic}: {message}"),
     "received": _Template("debug", "{topic}: {message}"),
     "fault": _Template("warning", "fault injected at {address}: {fault}"),
     "fault.detail": _Template("warning", "fault injected at {address}: {fault}, {detail}"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from typing import Any, TypeVar
 
 import msgspec
@@ -12,7 +12,16 @@ from engine.bus import Holder
 from engine.cause_chain import cause_of
 from engine.clock import Clock, OneTurn
 from engine.errors import Cause, FlexcellError
-from engine.event import GoalFinished, GoalHeld, GoalResumed, GoalSent, MessageReceived, ServiceAnswered, ServiceCalled
+from engine.event import (
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    GoalSent,
+    MessagePublished,
+    MessageReceived,
+    ServiceAnswered,
+    ServiceCalled,
+)
 from engine.runtime.nodes.execution import Execution
 from engine.runtime.record.nonfinite import encode_nonfinite
 from engine.runtime.record.recorder import Recorder
@@ -23,6 +32,7 @@ from engine.skills.goal_end import GoalEnd, GoalStatus
 R = TypeVar("R")
 F = TypeVar("F")
 S = TypeVar("S", bound=msgspec.Struct)
+M = TypeVar("M")
 
 
 class HoldableClock:
@@ -101,7 +111,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         self._calls += 1
         call = f"{self.path}#{self._visit}.c{self._calls}"
         with execution.pending_calls.of(self.path):
-            self._record_called(call, request, f"{to}/{request.skill_name()}")
+            self._record_called(call, request, request.address(to))
             await execution.commit()
             try:
                 answer = await self._answer(request, to)
@@ -119,7 +129,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         await execution.branch_holds.until_free(self.path)
         self._goals += 1
         goal_id = f"{self.path}#{self._visit}.{self._goals}"
-        self._record_sent(goal_id, goal, f"{to}/{goal.skill_name()}")
+        self._record_sent(goal_id, goal, goal.address(to))
         try:
             await execution.commit()
             sent = execution.skills.send_goal(goal, to=to, holder=self._holder, goal_id=goal_id)
@@ -150,6 +160,25 @@ class ActivationContext(msgspec.Struct, eq=False):
         """Wait for the next message of a topic."""
         self._count_progress()
         return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
+
+    async def latest_data(self, topic: str) -> object:
+        """Return the latest message of a topic as plain data, waiting for the first one."""
+        self._count_progress()
+        return self._received(topic, await self._execution.skills.latest_data(topic, holder=self._holder))
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool]) -> object:
+        """Wait for the next message of a topic that meets the condition; it alone is recorded."""
+        self._count_progress()
+        return self._received(topic, await self._execution.skills.next_data(topic, condition, holder=self._holder))
+
+    async def publish(self, topic: str, message: object) -> None:
+        """Publish a message once the journal is durable, as somebody may act on it."""
+        execution = self._execution
+        await execution.branch_holds.until_free(self.path)
+        execution.progress_count += 1
+        execution.recorder.emit(MessagePublished, path=self.path, topic=topic, message=encode_nonfinite(message))
+        await execution.commit()
+        execution.skills.publish(topic, message, holder=self._holder)
 
     async def offer(self, outcome: str) -> None:
         """Ask the operator to confirm an outcome where the autonomy level requires it; cancelling withdraws."""
@@ -184,7 +213,7 @@ class ActivationContext(msgspec.Struct, eq=False):
     def _holder(self) -> Holder:
         return Holder(self._execution.run, self.path)
 
-    def _received(self, topic: str, message: S) -> S:
+    def _received(self, topic: str, message: M) -> M:
         self._execution.recorder.emit(
             MessageReceived, path=self.path, topic=topic, message=encode_nonfinite(msgspec.to_builtins(message))
         )
@@ -196,7 +225,7 @@ class ActivationContext(msgspec.Struct, eq=False):
             path=self.path,
             call=call,
             address=address,
-            request=encode_nonfinite(msgspec.to_builtins(request)),
+            request=encode_nonfinite(request.data()),
         )
 
     def _record_answered(self, call: str, answer: object, cause: Cause | None) -> None:
@@ -214,7 +243,7 @@ class ActivationContext(msgspec.Struct, eq=False):
             path=self.path,
             goal=goal_id,
             address=address,
-            request=encode_nonfinite(msgspec.to_builtins(goal)),
+            request=encode_nonfinite(goal.data()),
         )
 
     def _record_finished(self, end: GoalEnd[Any], goal_id: str) -> None:

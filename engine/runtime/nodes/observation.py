@@ -7,6 +7,7 @@ state itself, which sends the same requests in the tick that follows: both use o
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import TypeVar
 
 import msgspec
@@ -122,6 +123,19 @@ class ObservingContext:
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
         """Refuse: an observation does not wait."""
+        raise asyncio.CancelledError
+
+    async def latest_data(self, topic: str) -> object:
+        """Return the latest message of a topic as plain data, waiting for the first one."""
+        self.topics.add(topic)
+        return await self._execution.skills.latest_data(topic, holder=self._holder)
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool]) -> object:
+        """Refuse: an observation does not wait."""
+        raise asyncio.CancelledError
+
+    async def publish(self, topic: str, message: object) -> None:
+        """Refuse: an observation has no effect."""
         raise asyncio.CancelledError
 
     async def offer(self, outcome: str) -> None:

@@ -11,9 +11,9 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import msgspec
 
-from engine.bus import GoalEnd, Holder, SkillBus
+from engine.bus import GoalEnd, Holder, SkillBus, publish_value, typed_action, typed_service
 from engine.runtime.record.recorder import Recorder
-from engine.skill import Action, Service
+from engine.skill import Action, NamedAction, NamedService, Service
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -72,6 +72,18 @@ class SkillPort(Protocol):
         """Wait for the next message of a topic."""
         ...
 
+    async def latest_data(self, topic: str, *, holder: Holder) -> object:
+        """Return the latest message of an existing topic as plain data, waiting for the first one."""
+        ...
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
+        """Wait for the next message of an existing topic, as plain data, that meets the condition."""
+        ...
+
+    def publish(self, topic: str, message: object, *, holder: Holder) -> None:
+        """Publish plain data on a topic that the cell document declares; raises the errors of the bus."""
+        ...
+
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
         """Call back at each new message of a topic that was read; returns a function that ends the subscription."""
         ...
@@ -103,11 +115,15 @@ class BusPort:
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
         """Call a service; raises the errors of the bus."""
+        if isinstance(request, NamedService):
+            typed = typed_service(self._bus, request.address(to), request.fields)
+            return msgspec.to_builtins(await self._bus.call(typed, to=to, holder=holder))
         return await self._bus.call(request, to=to, holder=holder)
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
         """Send a goal; raises the errors of the bus."""
-        return self._bus.send_goal(goal, to=to, holder=holder, goal_id=goal_id)
+        sent = typed_action(self._bus, goal.address(to), goal.fields) if isinstance(goal, NamedAction) else goal
+        return self._bus.send_goal(sent, to=to, holder=holder, goal_id=goal_id)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Return the latest message of a topic, waiting for the first one."""
@@ -119,6 +135,23 @@ class BusPort:
         with self._bus.topic(topic, kind).stream(size=1) as stream:
             return await stream.next()
 
+    async def latest_data(self, topic: str, *, holder: Holder) -> object:
+        """Return the latest message of an existing topic as plain data, waiting for the first one."""
+        message = self._bus.find_topic(topic).latest
+        return msgspec.to_builtins(message) if message is not None else await self.next_data(topic, _any, holder=holder)
+
+    async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
+        """Wait for the next message of an existing topic, as plain data, that meets the condition."""
+        with self._bus.find_topic(topic).stream() as stream:
+            while True:
+                data: object = msgspec.to_builtins(await stream.next())
+                if condition(data):
+                    return data
+
+    def publish(self, topic: str, message: object, *, holder: Holder) -> None:
+        """Publish plain data on a topic that the cell document declares; raises the errors of the bus."""
+        publish_value(self._bus, topic, message)
+
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
         """Call back at each new message of a topic that was read; returns a function that ends the subscription."""
         return self._bus.find_topic(topic).subscribe(lambda _: callback()).close
@@ -127,3 +160,7 @@ class BusPort:
     def entries(self) -> EntrySchedule | None:
         """None: entries of a live run are not known in advance."""
         return None
+
+
+def _any(_data: object) -> bool:
+    return True

@@ -809,7 +809,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessagePublished | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -1447,6 +1447,16 @@ export interface MessageLogged {
   readonly path: string
   readonly level: string
   readonly message: string
+}
+
+/** A state published a message on a topic. */
+export interface MessagePublished {
+  readonly event: "published"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly topic: string
+  readonly message: unknown
 }
 
 /** A state read a message of a topic. */

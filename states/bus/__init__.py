@@ -1,0 +1,1 @@
+"""States for the skill bus: wait for messages, read and publish them, call services and send goals by name."""
