@@ -145,7 +145,15 @@ class Connection {
     }
     opened.onclose = () => {
       if (this.socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', readiness: {}, dropped: undefined, block: undefined, isPreviewing: false })
+      useTeach.setState({
+        isOpen: false,
+        jogging: '',
+        heldBy: '',
+        readiness: {},
+        dropped: undefined,
+        block: undefined,
+        isPreviewing: false,
+      })
       this.retry = setTimeout(() => this.open(), RETRY_MS)
     }
   }

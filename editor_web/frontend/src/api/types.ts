@@ -1869,10 +1869,17 @@ export interface Pose {
   readonly frame: string
 }
 
-/** From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop. */
+/** From the page: this arm is shown to be jogged; answered with its readiness, now and after every stop. Without a name no arm is shown any more. */
 export interface PrepareJogging {
   readonly k: "prepare"
   readonly arm: string
+}
+
+/** A press has moved nothing: it was released, and the arm could not begin to move within `within_s` after that. */
+export interface PressDropped {
+  readonly k: "dropped"
+  readonly arm: string
+  readonly within_s: number
 }
 
 /** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. `value` is shown in the place of an entry: the fields of one of this `kind`. */
@@ -3006,6 +3013,6 @@ export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Sweeps
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | JogReadiness | JogBlockFrame | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame
 
 export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks

@@ -215,12 +215,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
       <Text size="sm" c="dimmed" mih="1.5em" role="status" aria-label="State of jogging">
         {refusal
           ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
-          : dropped ||
-            stands ||
-            heldBy ||
-            steps.problem ||
-            obstacle ||
-            (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}
+          : dropped || stands || heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}
       </Text>
       <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
       {steps.isBusy && (
