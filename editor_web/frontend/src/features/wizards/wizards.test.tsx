@@ -120,7 +120,7 @@ it('makes a pose of three points, and says why some make none', async () => {
     [0.6, 0.001, 0.1],
   ])
   expect(screen.getByText(/are on one line/)).toBeInTheDocument()
-  await user.click(screen.getByLabelText('The tool looks into the plane'))
+  await user.click(screen.getByRole('switch', { name: /looks into the plane/ }))
   const y = screen.getByLabelText('Point on y y')
   await user.clear(y)
   await user.type(y, '0.2')
