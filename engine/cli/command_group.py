@@ -17,6 +17,7 @@ _IMPORT_PATHS = {
     "stop": "engine.cli.main:stop",
     "runs": "engine.cli.commands.runs:app",
     "check": "engine.cli.commands.check:check",
+    "adapt": "engine.cli.commands.adapt:adapt_behavior",
     "replay": "engine.cli.commands.replay:replay",
     "sweep": "engine.cli.commands.sweep:app",
     "export": "engine.cli.commands.export:export",

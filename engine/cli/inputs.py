@@ -109,6 +109,15 @@ def read_inputs(given: Sequence[str]) -> dict[str, object]:
     return {key: read_json(text, f"--input {key}") for key, text in (_split(pair, "--input") for pair in given)}
 
 
+def read_pairs(given: Sequence[str], option: str) -> dict[str, str]:
+    """Read `name=text` pairs as they are.
+
+    Raises:
+        DocumentError: a pair is not `name=text`.
+    """
+    return dict(_split(pair, option) for pair in given)
+
+
 def read_json(text: str, where: str) -> object:
     """Read a JSON value given on the command line.
 

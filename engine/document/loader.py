@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import msgspec
 
@@ -89,6 +91,7 @@ def survey_behavior(
     *,
     source: DocumentSource | None = None,
     within: Path | None = None,
+    unwritten: Mapping[Path, str] | None = None,
 ) -> BehaviorSurvey:
     """Read a behavior with all its mistakes and those of the behaviors it refers to.
 
@@ -97,19 +100,20 @@ def survey_behavior(
         text: Edited text to read instead of the file; references are relative to `path`.
         source: The text as it was read already; the text is read again only if it has mistakes.
         within: A folder; references to files outside of it are not read and are mistakes.
+        unwritten: Texts to read in place of the referred files at these resolved paths, which need not exist.
     """
-    file = Path(path)
+    file, texts = Path(path), unwritten or {}
     try:
         if source is not None:
-            return _survey_strictly(source, file)
+            return _survey_strictly(source, file, texts)
     except DocumentError:
         pass  # the text is read again below, for the positions of all mistakes
     try:
         source = parse_source(text, file=str(path)) if text is not None else load_source(file)
-        return _survey_strictly(source, file)
+        return _survey_strictly(source, file, texts)
     except DocumentError as refusal:
         first = refusal
-    around = _Reading(mistakes=[], within=within)
+    around = _Reading(mistakes=[], within=within, unwritten=texts)
     try:
         recovered = recover_text(text, file=str(path)) if text is not None else load_recovering(file)
         behavior = around.build_around(recovered, file, ())
@@ -120,8 +124,8 @@ def survey_behavior(
     return BehaviorSurvey(behavior=behavior, mistakes=mistakes, circles=tuple(around.circles))
 
 
-def _survey_strictly(source: DocumentSource, file: Path) -> BehaviorSurvey:
-    reading = _Reading()
+def _survey_strictly(source: DocumentSource, file: Path, unwritten: Mapping[Path, str]) -> BehaviorSurvey:
+    reading = _Reading(unwritten=unwritten)
     behavior = reading.build(source, file, ())
     return BehaviorSurvey(behavior=behavior, circles=tuple(reading.circles))
 
@@ -129,7 +133,14 @@ def _survey_strictly(source: DocumentSource, file: Path) -> BehaviorSurvey:
 class _Reading:
     """One pass over a document and its references; with a list for mistakes it collects them and continues."""
 
-    def __init__(self, *, mistakes: list[DocumentError] | None = None, within: Path | None = None) -> None:
+    def __init__(
+        self,
+        *,
+        mistakes: list[DocumentError] | None = None,
+        within: Path | None = None,
+        unwritten: Mapping[Path, str] = MappingProxyType({}),
+    ) -> None:
+        self._unwritten = unwritten
         self._within = within.resolve() if within is not None else None
         self.circles: list[CircularReference] = []
         self.mistakes: list[DocumentError] = mistakes if mistakes is not None else []
@@ -143,10 +154,14 @@ class _Reading:
         known = self._done.get(_identity(file))
         if known is not None:
             return known
+        text = self._unwritten.get(_identity(file))
         if self._goes_around:
-            behavior = self.build_around(load_recovering(file), file, chain)
+            recovered = load_recovering(file) if text is None else recover_text(text, file=str(file))
+            behavior = self.build_around(recovered, file, chain)
         else:
-            behavior = self.build(load_source(file), file, chain)
+            behavior = self.build(
+                load_source(file) if text is None else parse_source(text, file=str(file)), file, chain
+            )
         self._done[_identity(file)] = behavior
         return behavior
 
@@ -211,7 +226,7 @@ class _Reading:
                 raise DocumentError(f"behavior references are nested more than {MAX_CHAIN} deep", where=position)
             if self._is_outside(file):
                 self._refuse_outside(written, position)
-            elif not file.is_file():
+            elif _identity(file) not in self._unwritten and not file.is_file():
                 self._refuse(f"there is no behavior file `{written}`", position, f"looked for {file}")
             elif (referred := self._referred(file, chain)) is not None:
                 references[written] = referred

@@ -3,6 +3,8 @@
 `apply_edits` is a function of text and edits; `DocumentRepository` opens, saves, merges and keeps versions.
 """
 
+from engine.editing.adaptation.adaptation import AdaptationPlan, adapt, proposed_file
+from engine.editing.adapted_documents import plan_adaptation, write_adaptation
 from engine.editing.analysis.data_flow import KeyFlow
 from engine.editing.analysis.diagnostics import DocumentAnalysis, analyze_text, text_hash
 from engine.editing.analysis.document_diff import DocumentDiff, compare_texts
@@ -24,6 +26,7 @@ from engine.editing.text.three_way_merge import MergeConflict, MergeResult, merg
 from engine.editing.versions import DocumentVersion
 
 __all__ = [
+    "AdaptationPlan",
     "AnyEdit",
     "BehaviorReferenceView",
     "ContainerView",
@@ -50,6 +53,7 @@ __all__ = [
     "StoredDocument",
     "TargetChecks",
     "TargetFindings",
+    "adapt",
     "analyze_text",
     "apply_edits",
     "cell_reference",
@@ -58,7 +62,10 @@ __all__ = [
     "copy_nodes",
     "merge_texts",
     "move_with_references",
+    "plan_adaptation",
+    "proposed_file",
     "referrers",
     "state_views",
     "text_hash",
+    "write_adaptation",
 ]

@@ -60,7 +60,8 @@ class DocumentRepository:
     ) -> None:
         self.catalogue = catalogue
         self._stored = stored
-        self._cell = cell
+        self.cell = cell
+        """The open cell."""
         self._project = project.resolve()
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
@@ -79,7 +80,7 @@ class DocumentRepository:
 
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names of the open cell by kind, as the check knows them; none without a cell."""
-        return cell_names(self._cell).listed() if self._cell is not None else {}
+        return cell_names(self.cell).listed() if self.cell is not None else {}
 
     def offered_to(self, document_id: str, text: str) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names of the cell of a text by kind; those of the open cell if the text names none.
@@ -206,7 +207,7 @@ class DocumentRepository:
 
     def _cell_beside(self, file: Path) -> str | None:
         return (
-            Path(os.path.relpath(self._cell.file.resolve(), file.parent)).as_posix() if self._cell is not None else None
+            Path(os.path.relpath(self.cell.file.resolve(), file.parent)).as_posix() if self.cell is not None else None
         )
 
     def add(self, document_id: str, text: str) -> StoredDocument:

@@ -58,6 +58,7 @@ export const queryKeys = {
   versions: (id: string) => [...queryKeys.document(id), 'versions'] as const,
   comparedVersions: (id: string, before: string | undefined, after: string | undefined, draft: string) =>
     ['compared versions', id, before, after, draft] as const,
+  adaptation: (id: string, names: object) => [...queryKeys.document(id), 'adaptation', names] as const,
   referrers: ['referrers'],
   referrersOf: (id: string) => [...queryKeys.referrers, id] as const,
   deleted: ['deleted documents'],

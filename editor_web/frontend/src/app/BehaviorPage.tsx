@@ -20,6 +20,7 @@ import { proposedRequest } from '../document/plannedPaths'
 import { isActive, isFailed } from '../document/runState'
 import { hasErrors, startObstacle } from '../document/startObstacle'
 import { nodeAt } from '../document/tree'
+import { AdaptHere } from '../features/adaptation/AdaptHere'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
 import { ShowMenu } from '../features/cell/ShowMenu'
@@ -66,6 +67,8 @@ export interface BehaviorPageProps {
   readonly onStarted: () => void
   /** Open the editor, at a node where one is chosen. */
   readonly onEdit: (node: string) => void
+  /** Open another behavior in the editor. */
+  readonly onMade: (id: string) => void
 }
 
 export function BehaviorPage(props: BehaviorPageProps) {
@@ -81,7 +84,7 @@ export function BehaviorPage(props: BehaviorPageProps) {
   return <Loaded {...props} behavior={fetched.value} />
 }
 
-function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }: BehaviorPageProps & { behavior: BehaviorView }) {
+function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, onMade }: BehaviorPageProps & { behavior: BehaviorView }) {
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
   const [tab, setTab] = useState<Tab>(hasErrors(behavior) ? 'problems' : 'parameters')
@@ -273,6 +276,9 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           Start
         </Button>
       </PageHead>
+      <ViewBoundary name="Adapt">
+        <AdaptHere behavior={behavior.id} obstacle={behavior.fit.obstacle} mayEdit={mayOperate} onMade={onMade} />
+      </ViewBoundary>
       <ViewBoundary name="Interrupted run">
         <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
       </ViewBoundary>

@@ -91,6 +91,7 @@ export function RoutedPage(props: RoutedPageProps) {
       isNarrow={isNarrow}
       onStarted={() => onOpen(behaviorHref(behavior))}
       onEdit={(node) => onOpen(editHref(behavior, node))}
+      onMade={(made) => onOpen(editHref(made))}
     />
   )
 }

@@ -63,7 +63,7 @@ export function BehaviorList({ behaviors, current, href, onOpen, onMade }: Behav
             Of other cells ({others.length})
           </Text>
           <Text size="xs" px="2xs" c="var(--quiet)">
-            They cannot be started in this cell.
+            They cannot be started in this cell; open one to adapt it.
           </Text>
           <ul className="plain-list">
             {others.map((behavior) => (
