@@ -23,7 +23,7 @@ from starlette.types import ASGIApp
 
 from editor_web.cell_view import CellView
 from editor_web.http_bodies.common_bodies import ErrorBody, ResumeQuestionsBody
-from editor_web.http_bodies.document_bodies import ConflictBody
+from editor_web.http_bodies.document_bodies import conflict_body
 from editor_web.http_bodies.json_schemas import BodyTypes, component_schemas
 from editor_web.live.hub import LiveHub
 from editor_web.past import OpenRunCache
@@ -257,7 +257,7 @@ async def _refused(request: Request, error: Exception) -> Response:
         case NoSuchDocument() | NoSuchSweep():
             return json_response(body, 404)
         case DocumentConflict():
-            return json_response(_conflict(body, error), 409)
+            return json_response(conflict_body(error), 409)
         case ResumeDecisionRequired():
             return json_response(ResumeQuestionsBody(**asdict(body), questions=tuple(error.questions)), 409)
         case ControlError():
@@ -265,13 +265,6 @@ async def _refused(request: Request, error: Exception) -> Response:
             return json_response(body, 409)
         case _:
             return json_response(body, 422)
-
-
-def _conflict(body: ErrorBody, error: DocumentConflict) -> ConflictBody:
-    theirs = error.theirs
-    return ConflictBody(
-        **asdict(body), theirs=theirs.text, theirs_hash=theirs.hash, merged=error.merged, conflicts=error.conflicts
-    )
 
 
 async def _malformed_body(request: Request, error: Exception) -> Response:

@@ -15,7 +15,9 @@ from engine.editing import (
     BehaviorReferenceView,
     ContainerView,
     DocumentAnalysis,
-    MergeConflict,
+    DocumentConflict,
+    NodeMerge,
+    Side,
     StateView,
     StoredDocument,
     TargetFindings,
@@ -97,12 +99,17 @@ class SaveResultBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ConflictBody(ErrorBody, frozen=True, kw_only=True):
-    """The document has changed on disk; `merged` has both changes, null if they conflict."""
+    """The document has changed on disk; `merge` has both changes, null if they cannot be merged by nodes."""
 
     theirs: str
     theirs_hash: str
-    merged: str | None
-    conflicts: tuple[MergeConflict, ...]
+    merge: NodeMerge | None
+
+
+class MergeBody(SaveBody, frozen=True, kw_only=True):
+    """A text to merge with the one on disk, and the side to take for conflicts, by `path field`."""
+
+    sides: dict[Path, Side] = {}
 
 
 class NewDocumentBody(RequestBody, frozen=True, kw_only=True):
@@ -158,3 +165,15 @@ class CatalogueBody(msgspec.Struct, frozen=True, kw_only=True):
 def document_body(stored: StoredDocument, analysis: DocumentAnalysis) -> DocumentBody:
     """Return a document with its analysis."""
     return DocumentBody(**vars(analysis), id=stored.id, text=stored.text, saved_at=stored.saved_at_s)
+
+
+def conflict_body(error: DocumentConflict) -> ConflictBody:
+    """Return what a save has met."""
+    return ConflictBody(
+        message=error.message,
+        where=error.theirs.id,
+        hint=error.hint or "",
+        theirs=error.theirs.text,
+        theirs_hash=error.theirs.hash,
+        merge=error.merge,
+    )

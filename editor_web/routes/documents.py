@@ -16,6 +16,7 @@ from editor_web.http_bodies.document_bodies import (
     DocumentBody,
     DraftBody,
     EditsBody,
+    MergeBody,
     NewDocumentBody,
     NewIdBody,
     SaveBody,
@@ -25,6 +26,7 @@ from editor_web.http_bodies.document_bodies import (
     TextBody,
     VersionBody,
     VersionTextBody,
+    conflict_body,
     document_body,
 )
 from editor_web.routes.services import Services, ServicesOf
@@ -92,6 +94,13 @@ def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[s
 def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditAnswer:
     """Apply edits to a text, all or none; nothing is saved. A graph that the server knows comes as a difference."""
     return services.documents.edit(document_id, body.text, body.edits, check=body.check, graph=body.graph)
+
+
+@router.post("/{document_id:path}/merge")
+def merge(document_id: str, body: MergeBody, services: ServicesOf) -> ConflictBody:
+    """Merge a text with the document on disk by nodes, with a side for each conflict; nothing is saved."""
+    merged = services.documents.merge(document_id, body.text, base_hash=body.base_hash, sides=body.sides)
+    return conflict_body(merged)
 
 
 @router.post("/{document_id:path}/data_flow")

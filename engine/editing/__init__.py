@@ -22,7 +22,7 @@ from engine.editing.stored_document import DocumentConflict, NoSuchDocument, Sto
 from engine.editing.targets.target_checks import TargetChecks
 from engine.editing.targets.target_messages import TargetFindings
 from engine.editing.text.draft import Draft, EditRefused
-from engine.editing.text.three_way_merge import MergeConflict, MergeResult, merge_texts
+from engine.editing.text.node_merge import NodeConflict, NodeMerge, Side
 from engine.editing.versions import DocumentVersion
 
 __all__ = [
@@ -44,11 +44,12 @@ __all__ = [
     "EditResult",
     "GraphDifference",
     "KeyFlow",
-    "MergeConflict",
-    "MergeResult",
     "NoSuchDocument",
+    "NodeConflict",
+    "NodeMerge",
     "ProjectContext",
     "ReferringBehavior",
+    "Side",
     "StateView",
     "StoredDocument",
     "TargetChecks",
@@ -60,7 +61,6 @@ __all__ = [
     "compare_texts",
     "container_views",
     "copy_nodes",
-    "merge_texts",
     "move_with_references",
     "plan_adaptation",
     "proposed_file",

@@ -8,7 +8,7 @@ import os
 import re
 import threading
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import cast
@@ -27,7 +27,7 @@ from engine.editing.project_context import ProjectContext, StoredEntryNames
 from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
 from engine.editing.templates import new_text
 from engine.editing.text.draft import Draft
-from engine.editing.text.three_way_merge import MergeConflict, merge_texts
+from engine.editing.text.node_merge import NodeMerge, Side, merge_by_nodes
 from engine.editing.versions import DocumentVersion, VersionHistory, write_atomically
 from engine.errors import DocumentError, Position
 from engine.host.state_folder_names import STATE_FOLDER
@@ -186,12 +186,20 @@ class DocumentRepository:
             there = self._read(document_id, file)
             if there.hash == text_hash(text):
                 return there
+            if there.hash != base_hash:
+                # Whatever is chosen, neither text is lost.
+                self._versions.keep(document_id, text, by="editor")
             self._versions.keep(document_id, there.text)
             if there.hash != base_hash:
-                raise self._conflict(there, text, base_hash)
+                raise DocumentConflict(there, self._merged(there, text, base_hash, {}))
             write_atomically(file, text)
             self._versions.keep(document_id, text, by="editor")
         return self._read(document_id, file)
+
+    def merge(self, document_id: str, text: str, *, base_hash: str, sides: Mapping[str, Side]) -> DocumentConflict:
+        """Return what a save of this text meets, merged with these choices; nothing is written."""
+        there = self._read(document_id, self.file_of(document_id))
+        return DocumentConflict(there, self._merged(there, text, base_hash, sides))
 
     def create(self, document_id: str, *, template: str = "machine", name: str = "") -> StoredDocument:
         """Create a document from a template; it belongs to the open cell.
@@ -329,20 +337,12 @@ class DocumentRepository:
         except OSError as error:
             _log.warning("cannot keep a version of %s: %s", document_id, error)
 
-    def _conflict(self, there: StoredDocument, text: str, base_hash: str) -> DocumentConflict:
+    def _merged(self, there: StoredDocument, text: str, base_hash: str, sides: Mapping[str, Side]) -> NodeMerge | None:
         try:
             base = self._versions.text(there.id, base_hash)
         except DocumentError:
-            # The base text is unknown, so no merge is possible: a person must decide.
-            line = MergeConflict(line=1, base="", ours=text, theirs=there.text)
-            return DocumentConflict(there, None, (line,))
-        merged = merge_texts(base, text, there.text)
-        if merged.text is not None:
-            try:
-                _require_document(merged.text, there.id)
-            except DocumentError:
-                return DocumentConflict(there, None, (MergeConflict(line=1, base=base, ours=text, theirs=there.text),))
-        return DocumentConflict(there, merged.text, merged.conflicts)
+            return None  # the base text is unknown: a person must decide
+        return merge_by_nodes(base, text, there.text, file=there.id, sides=sides)
 
     def _put(self, document_id: str, file: Path, text: str) -> StoredDocument:
         with self._changing(document_id):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.editing.text.three_way_merge import MergeConflict
+from engine.editing.text.node_merge import NodeMerge
 from engine.errors import DocumentError
 
 
@@ -23,15 +23,14 @@ class NoSuchDocument(DocumentError):
 
 
 class DocumentConflict(DocumentError):
-    """A document changed after the writer read it; `merged` has both changes if they do not conflict."""
+    """A document changed after the writer read it; `merge` has both changes, None where they cannot be merged."""
 
-    def __init__(self, theirs: StoredDocument, merged: str | None, conflicts: tuple[MergeConflict, ...]) -> None:
+    def __init__(self, theirs: StoredDocument, merge: NodeMerge | None) -> None:
         hint = (
             "compare both versions and save again"
-            if merged is None
-            else "save the merged text, or choose one of the two"
+            if merge is None
+            else "save the merged text, or choose for each conflict"
         )
         super().__init__("the document has changed on disk", where=theirs.id, hint=hint)
         self.theirs = theirs
-        self.merged = merged
-        self.conflicts = conflicts
+        self.merge = merge

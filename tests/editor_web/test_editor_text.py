@@ -173,27 +173,31 @@ def test_problems_lead_to_their_node_and_line(browser: Browser, shop: Workshop) 
 
 
 @pytest.mark.parametrize("side", ["merged", "theirs", "mine"])
-def test_a_file_that_changed_on_disk_is_never_overwritten_silently(browser: Browser, shop: Workshop, side: str) -> None:
-    """Both are shown; nothing is written before a choice."""
+def test_a_file_that_changed_on_disk_is_merged_by_nodes(browser: Browser, shop: Workshop, side: str) -> None:
+    """Other fields are merged by themselves; one that both changed is marked at its node, and nothing is written."""
     with at_editor(browser, shop, SHIFT_ID, quiet=False) as page:
         card(page, "root/set").click()
         fill(page, "value", "42")
         expect(page.locator("[data-unsaved]")).to_be_visible()
         theirs = file_text(shop, SHIFT_ID).replace("name: shift", "name: late shift")
+        if side != "merged":
+            theirs = theirs.replace("value: 1", "value: 7")
         (shop.project / SHIFT_ID).write_text(theirs, encoding="utf-8")
         page.keyboard.press("Escape")
         page.keyboard.press("Control+s")
-        dialog = page.get_by_role("dialog", name="The file has changed on disk")
-        expect(dialog.locator("[data-changed]")).to_have_count(2)
-        assert file_text(shop, SHIFT_ID) == theirs
-        choices = {"merged": "Save the merged text", "theirs": "Take the one on disk", "mine": "Overwrite with yours"}
-        dialog.get_by_role("button", name=choices[side]).click()
-        expect(dialog).to_have_count(0)
+        if side != "merged":
+            panel = page.get_by_role("region", name="Conflicts")
+            expect(panel.locator("[data-conflict]")).to_have_count(1)
+            expect(card(page, "root/set").locator("[data-conflicts='1']")).to_be_visible()
+            assert file_text(shop, SHIFT_ID) == theirs
+            panel.get_by_text({"theirs": "Theirs: 7", "mine": "Mine: 42"}[side]).click()
+            panel.get_by_role("button", name="Save with these choices").click()
+            expect(panel).to_have_count(0)
         expect(page.locator("[data-unsaved]")).to_have_count(0)
         idle(page)
     on_disk = file_text(shop, SHIFT_ID)
-    assert ("late shift" in on_disk) == (side != "mine")
-    assert ("value: 42" in on_disk) == (side != "theirs")
+    assert "late shift" in on_disk
+    assert ("value: 42" in on_disk, "value: 7" in on_disk) == (side != "theirs", side == "theirs")
 
 
 def test_a_draft_outlives_the_page(browser: Browser, shop: Workshop) -> None:

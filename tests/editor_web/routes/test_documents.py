@@ -131,27 +131,34 @@ async def test_what_changed_on_disk_is_merged_and_never_overwritten(client: Edit
     answer = await client.save(SHIFT.replace("duration_s: 1", "duration_s: 2"), opened["hash"])
     assert answer.status_code == 409
     body = answer.json()
-    assert (body["theirs"], body["conflicts"]) == (theirs, [])
-    assert body["merged"] == theirs.replace("duration_s: 1", "duration_s: 2")
+    merge = body["merge"]
+    assert (body["theirs"], merge["conflicts"]) == (theirs, [])
+    assert merge["text"] == theirs.replace("duration_s: 1", "duration_s: 2")
     assert client.file.read_text() == theirs
-    again = await client.save(body["merged"], body["theirs_hash"])
+    again = await client.save(merge["text"], body["theirs_hash"])
     assert again.status_code == 200
-    assert client.file.read_text() == body["merged"]
+    assert client.file.read_text() == merge["text"]
 
 
-async def test_changes_of_one_line_on_both_sides_are_shown_as_a_conflict(client: EditingClient) -> None:
+async def test_a_field_that_both_changed_is_decided_and_neither_text_is_lost(client: EditingClient) -> None:
     opened = await client.opened()
-    client.file.write_text(SHIFT.replace("duration_s: 1", "duration_s: 3"))
-    body = (await client.save(SHIFT.replace("duration_s: 1", "duration_s: 2"), opened["hash"])).json()
-    assert body["merged"] is None
-    assert [(each["line"], each["ours"].strip(), each["theirs"].strip()) for each in body["conflicts"]] == [
-        (13, "with: {duration_s: 2}", "with: {duration_s: 3}")
+    theirs, mine = (SHIFT.replace("duration_s: 1", f"duration_s: {number}") for number in (3, 2))
+    client.file.write_text(theirs)
+    merge = (await client.save(mine, opened["hash"])).json()["merge"]
+    assert [(each["path"], each["field"], each["mine"], each["theirs"]) for each in merge["conflicts"]] == [
+        ("root/second", "with.duration_s", 2, 3)
     ]
+    sides = {"root/second with.duration_s": "theirs"}
+    body = {"text": mine, "base_hash": opened["hash"], "sides": sides}
+    chosen = (await client.post(f"/documents/{SHIFT_ID}/merge", body)).json()
+    assert chosen["merge"]["text"] == theirs
+    kept = [client.documents.version(SHIFT_ID, each.hash) for each in client.documents.versions(SHIFT_ID)]
+    assert kept == [theirs, mine, SHIFT]
 
 
-async def test_a_base_that_nobody_knows_is_a_conflict(client: EditingClient) -> None:
+async def test_a_base_that_nobody_knows_is_not_merged(client: EditingClient) -> None:
     answer = await client.save(SHIFT + "# more\n", "0" * 64)
-    assert (answer.status_code, answer.json()["merged"]) == (409, None)
+    assert (answer.status_code, answer.json()["merge"]) == (409, None)
     assert client.file.read_text() == SHIFT
 
 

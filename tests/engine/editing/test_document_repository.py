@@ -93,8 +93,8 @@ def test_saving_the_text_that_is_there_is_no_conflict(documents: DocumentReposit
     assert documents.save(ID, TEXT, base_hash="0" * 64).hash == text_hash(TEXT)
 
 
-def test_a_merge_that_cannot_be_read_is_a_conflict(documents: DocumentRepository) -> None:
-    """Either change is well, together they repeat a key."""
+def test_what_both_add_is_a_conflict_where_its_lines_could_be_merged(documents: DocumentRepository) -> None:
+    """Either change is well, the lines together would repeat a key."""
     base = "flexcell: 1\n\n\n\nname: x\n"
     documents.create("behaviors/y.yaml")
     file = documents.file_of("behaviors/y.yaml")
@@ -103,7 +103,11 @@ def test_a_merge_that_cannot_be_read_is_a_conflict(documents: DocumentRepository
     file.write_text(f"description: a\n{base}")
     with pytest.raises(DocumentConflict) as raised:
         documents.save("behaviors/y.yaml", f"{base}description: b\n", base_hash=opened.hash)
-    assert (raised.value.merged, len(raised.value.conflicts)) == (None, 1)
+    merge = raised.value.merge
+    assert merge is not None
+    assert [(each.path, each.field, each.mine, each.theirs) for each in merge.conflicts] == [
+        ("document", "description", "b", "a")
+    ]
 
 
 def test_a_deleted_document_can_be_brought_back(documents: DocumentRepository) -> None:

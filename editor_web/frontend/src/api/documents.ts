@@ -10,10 +10,14 @@ import type {
   EditAnswer,
   FindingView,
   NewDocumentBody,
+  NodeConflict,
   SaveResultBody,
   TargetFindingsBody,
 } from './types'
 import { addressOf } from '../document/path'
+
+/** The side to take for a conflict, by its path and field. */
+export type MergeSides = Readonly<Record<string, NodeConflict['side']>>
 
 function at(id: string, rest = ''): string {
   return `/documents/${addressOf(id)}${rest}`
@@ -33,6 +37,9 @@ export const documents = {
     post<EditAnswer>(at(id, '/edits'), { text, edits, check, graph }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopyResultBody>(at(id, '/copy'), { text, paths }),
   save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
+  /** What a save would meet, merged with these sides; nothing is written. */
+  merge: (id: string, text: string, baseHash: string, sides: MergeSides) =>
+    post<ConflictBody>(at(id, '/merge'), { text, base_hash: baseHash, sides }),
   catalogue: () => call<CatalogueBody>('/catalogue'),
 }
 

@@ -491,15 +491,14 @@ export interface Configuration {
   readonly values: Dict<unknown>
 }
 
-/** The document has changed on disk; `merged` has both changes, null if they conflict. */
+/** The document has changed on disk; `merge` has both changes, null if they cannot be merged by nodes. */
 export interface ConflictBody {
   readonly message: string
   readonly where: string
   readonly hint: string
   readonly theirs: string
   readonly theirs_hash: string
-  readonly merged: string | null
-  readonly conflicts: readonly MergeConflict[]
+  readonly merge: NodeMerge | null
 }
 
 /** A request to reconnect the lost devices of the cell. */
@@ -1413,12 +1412,11 @@ export interface MeasuredValue {
   readonly most?: number | null
 }
 
-/** Lines that both sides changed differently; `line`, from 1, is their position in our text. */
-export interface MergeConflict {
-  readonly line: number
-  readonly base: string
-  readonly ours: string
-  readonly theirs: string
+/** A text to merge with the one on disk, and the side to take for conflicts, by `path field`. */
+export interface MergeBody {
+  readonly text: string
+  readonly base_hash: string
+  readonly sides?: Dict<"mine" | "theirs">
 }
 
 /** The latest message of the subscribed topic, truncated to a bounded size; at most five per second. `at_s` is the sampling time on the server's clock; `problem` tells why there is no message. */
@@ -1526,6 +1524,16 @@ export interface NodeCommandBody {
   readonly path: string
 }
 
+/** A field that both sides changed differently. Attributes: path: The node, `document` for the document itself. field: The field, `with.speed`; empty for the node as a whole: one side removed or replaced it. base: What both began with; None where it did not exist, as for the two sides. mine: The value of who saves. theirs: The value in the file. side: Which of them is in the merged text. */
+export interface NodeConflict {
+  readonly path: string
+  readonly field: string
+  readonly base: unknown
+  readonly mine: unknown
+  readonly theirs: unknown
+  readonly side: "mine" | "theirs"
+}
+
 /** How often a node was visited in each run, and how long all its visits together took. */
 export interface NodeDifference {
   readonly path: string
@@ -1580,6 +1588,13 @@ export interface NodeLive {
   readonly cause: string
   readonly last_transition: string
   readonly plan: PlanLive | null
+}
+
+/** A text with the changes of both sides; `theirs_changed` are the nodes that the file changed. */
+export interface NodeMerge {
+  readonly text: string
+  readonly conflicts: readonly NodeConflict[]
+  readonly theirs_changed: readonly string[]
 }
 
 /** A node is run again after a failure; `attempt` counts from 2. */

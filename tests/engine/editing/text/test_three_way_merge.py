@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.editing import MergeConflict, merge_texts
+from engine.editing.text.three_way_merge import MergeConflict, merge_texts
 
 LINES = st.lists(st.sampled_from(["a", "b", "c", "d", "e"]), max_size=8)
 

@@ -6,6 +6,7 @@ import {
   IconCircleXFilled,
   IconClock,
   IconFlag,
+  IconGitMerge,
   IconNote,
   IconQuestionMark,
   IconRefresh,
@@ -19,7 +20,7 @@ import { kindLabel } from '../../document/tree'
 import classes from './cards.module.css'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
 import { NodeIcon } from './NodeIcon'
-import { useMark, useTransitionFindings } from './marks'
+import { useConflicts, useMark, useTransitionFindings } from './marks'
 
 const QUIET = { color: 'var(--quiet)' }
 
@@ -155,7 +156,29 @@ function Extras({ data: { node } }: { data: CardData }) {
   )
 }
 
-function MarkIcon({ path, inside }: { path: string; inside: boolean }) {
+function MarkIcon(props: { path: string; inside: boolean }) {
+  return (
+    <>
+      <ConflictIcon {...props} />
+      <FindingIcon {...props} />
+    </>
+  )
+}
+
+/** Both the draft and the file have changed something of the node. */
+function ConflictIcon({ path, inside }: { path: string; inside: boolean }) {
+  const count = useConflicts(path, inside)
+  if (count === 0) return null
+  const words = `${count} ${count === 1 ? 'conflict' : 'conflicts'} with the file`
+  return (
+    <span className={classes['sign']} data-severity="warning" data-conflicts={count} title={words}>
+      <IconGitMerge size={15} aria-hidden />
+      <VisuallyHidden>{words}</VisuallyHidden>
+    </span>
+  )
+}
+
+function FindingIcon({ path, inside }: { path: string; inside: boolean }) {
   const mark = useMark(path, inside)
   if (!mark) return null
   const Icon = mark.severity === 'error' ? IconCircleXFilled : IconAlertTriangleFilled

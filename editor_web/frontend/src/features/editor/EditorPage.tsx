@@ -17,6 +17,7 @@ import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
 import { setPageActions } from './pageActions'
 import { ConflictDialog } from './ConflictDialog'
+import { ConflictPanel } from './ConflictPanel'
 import { forgetDataFlow, useDataFlow } from './dataFlow'
 import { DataFlowPanel } from './DataFlowPanel'
 import { EditorHead } from './EditorHead'
@@ -177,6 +178,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     <Flex direction="column" pos="relative" flex={1} mih={0} ref={element} data-editor aria-busy={isBusy}>
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
       <NoticeLine />
+      <ConflictPanel />
       {isNarrow ? (
         <Tabs defaultValue="canvas">
           <Tabs.List>

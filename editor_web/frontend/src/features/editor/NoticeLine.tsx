@@ -23,8 +23,8 @@ export function NoticeLine() {
     <>
       {isOutdated && (
         <Note tone="warning" icon={<IconAlertTriangle size={16} aria-hidden />}>
-          <span>The file has changed on disk since you began. Saving shows both.</span>
-          <LinkButton onPress={() => void save()}>Compare now</LinkButton>
+          <span>The file has changed on disk since you began. Saving merges both by nodes.</span>
+          <LinkButton onPress={() => void save()}>Merge now</LinkButton>
           <LinkButton onPress={() => void discard()}>Take the file</LinkButton>
         </Note>
       )}

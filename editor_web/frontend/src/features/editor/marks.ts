@@ -25,6 +25,15 @@ export function useMark(path: string, inside: boolean): Mark | undefined {
   }, [own])
 }
 
+/** The fields of a node that the file has changed too; with `inside`, also those of the nodes in it. */
+export function useConflicts(path: string, inside: boolean): number {
+  return useEditor((s) => {
+    const conflicts = s.conflict?.merge?.conflicts
+    if (!conflicts) return 0
+    return conflicts.filter((each) => each.path === path || (inside && pathsTo(each.path).includes(path))).length
+  })
+}
+
 interface Placed {
   readonly at: ReadonlyMap<string, readonly FindingView[]>
   /** Those at a node and at the nodes in it. */

@@ -1,9 +1,10 @@
 /** Opening and saving: the file, the kept draft, and what to do when both have changed. */
 import { wordsOf } from '../../api/client'
 import { conflictOf, documents } from '../../api/documents'
+import type { ConflictBody, NodeConflict } from '../../api/types'
 import { newHistory, pushed, replaced } from '../../document/editing/history'
 import { nodeOf, ROOT } from '../../document/editing/model'
-import { parentPath } from '../../document/path'
+import { nameOfPath, parentPath } from '../../document/path'
 import { draftFrom, inTurn, lookForFindings, readAnew, takeText } from './apply'
 import { deleteStoredDraft, storeDraftNow, storedDraft } from './draftStorage'
 import { blank, draftOf, editor, isDirty, showEditorRefusal, setEditor, showEditorNotice, useEditor } from './store'
@@ -52,39 +53,93 @@ export function reveal(path: string): void {
   if (!path.startsWith(`${scope}/`)) setEditor({ scope: parentPath(path) || ROOT })
 }
 
-/** Write the draft to disk; true when it is there. Where the file has changed meanwhile, nothing is written and both are shown. */
-export function save(): Promise<boolean> {
-  return inTurn(async () => {
-    const { id, base } = editor()
-    const { text } = draftOf(editor())
-    if (!isDirty(editor()) && !editor().isOutdated) return true
-    try {
-      const { hash } = await documents.save(id, text, base.hash)
-      setEditor({ base: { text, hash }, notice: undefined, conflict: undefined, isRestored: false, isOutdated: false })
-      storeDraftNow()
-      showEditorNotice('Saved')
-      return true
-    } catch (error) {
-      const conflict = conflictOf(error)
-      if (conflict) setEditor({ conflict })
-      else showEditorRefusal('Save', wordsOf(error), 'The draft is kept in this browser; try again.')
-      return false
-    }
-  })
+/** Write the draft to disk; true when it is there. Where the file has changed meanwhile, both changes are merged by nodes. */
+export async function save(): Promise<boolean> {
+  const met = await inTurn(write)
+  if (typeof met === 'boolean') return met
+  if (met.merge && met.merge.conflicts.length === 0) return takeMerged(met)
+  setEditor({ conflict: met, sides: {}, isComparing: met.merge === null })
+  return false
 }
 
-/** Which text to go on with when the file has changed under the draft. */
-export type Side = 'merged' | 'theirs' | 'mine'
+async function write(): Promise<boolean | ConflictBody> {
+  const { id, base } = editor()
+  const { text } = draftOf(editor())
+  if (!isDirty(editor()) && !editor().isOutdated) return true
+  try {
+    const { hash } = await documents.save(id, text, base.hash)
+    setEditor({ base: { text, hash }, notice: undefined, conflict: undefined, isRestored: false, isOutdated: false })
+    storeDraftNow()
+    showEditorNotice('Saved')
+    return true
+  } catch (error) {
+    const conflict = conflictOf(error)
+    if (conflict) return conflict
+    showEditorRefusal('Save', wordsOf(error), 'The draft is kept in this browser; try again.')
+    return false
+  }
+}
 
-/** End a conflict: `theirs` is taken as it is on disk, the others are saved in its place. */
+/** Go on with the merged text and save it, unless the two changes make errors together that neither has alone. */
+async function takeMerged({ merge, theirs, theirs_hash: hash }: ConflictBody): Promise<boolean> {
+  if (!merge) return false
+  await lookForFindings()
+  const before = new Set(errorsNow())
+  setEditor({ conflict: undefined, isOutdated: false, base: { text: theirs, hash } })
+  await takeText('Merge with the file', merge.text)
+  await lookForFindings()
+  if (errorsNow().some((error) => !before.has(error))) {
+    setEditor({ tab: 'problems' })
+    showEditorRefusal(
+      'Save',
+      'merged with the file the behavior has new errors.',
+      'See the problems, then save; Undo goes back to your text.',
+    )
+    return false
+  }
+  const isSaved = await save()
+  const names = merge.theirs_changed.map(nameOfPath).join(', ')
+  if (isSaved && names) showEditorNotice(`Saved with changes of the file: ${names}`)
+  return isSaved
+}
+
+function errorsNow(): readonly string[] {
+  return draftOf(editor())
+    .findings.filter((finding) => finding.severity === 'error')
+    .map((finding) => `${finding.path} ${finding.code} ${finding.message}`)
+}
+
+/** Merge again with the sides that were chosen, and save that. */
+export async function saveChosen(): Promise<void> {
+  const { id, base, sides } = editor()
+  try {
+    const met = await documents.merge(id, draftOf(editor()).text, base.hash, sides)
+    const open = met.merge?.conflicts.filter((conflict) => !(keyOf(conflict) in sides))
+    if (open?.length === 0) await takeMerged(met)
+    else setEditor({ conflict: met })
+  } catch (error) {
+    showEditorRefusal('Save', wordsOf(error))
+  }
+}
+
+/** What a side is chosen for. */
+export function keyOf({ path, field }: NodeConflict): string {
+  return `${path} ${field}`
+}
+
+/** Which text to go on with as a whole when the file has changed under the draft. */
+export type Side = NodeConflict['side']
+
+/** End a conflict: `theirs` is taken as it is on disk, `mine` is saved in its place. */
 export async function resolve(side: Side): Promise<void> {
   const { conflict } = editor()
   if (!conflict) return
-  const text = side === 'theirs' ? conflict.theirs : side === 'merged' ? (conflict.merged ?? '') : draftOf(editor()).text
   setEditor({ conflict: undefined, isOutdated: false, base: { text: conflict.theirs, hash: conflict.theirs_hash } })
-  if (side !== 'mine') await takeText(side === 'merged' ? 'Merge with the file' : 'Take the file', text)
-  if (side !== 'theirs') await save()
-  else storeDraftNow()
+  if (side === 'mine') await save()
+  else {
+    await takeText('Take the file', conflict.theirs)
+    storeDraftNow()
+  }
 }
 
 /** Go back to the file as it is on disk; the draft stays in the history. */

@@ -1,4 +1,5 @@
 /** What the editor holds: the document's history, what is chosen and shown, and what the server last refused. */
+import type { MergeSides } from '../../api/documents'
 import type { CatalogueBody, ConflictBody } from '../../api/types'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
 import type { EdgeId } from '../../document/edgeId'
@@ -67,7 +68,11 @@ export interface EditorState {
   readonly keptOpen: ReadonlySet<string>
   readonly isBusy: boolean
   readonly notice: Notice | undefined
+  /** What a save has met that is for a person to decide. */
   readonly conflict: ConflictBody | undefined
+  /** The sides that were chosen for its conflicts, by path and field. */
+  readonly sides: MergeSides
+  readonly isComparing: boolean
   readonly palette: PaletteRequest | undefined
   /** Where on the screen the menu of the selected nodes is open. */
   readonly menu: Point | undefined
@@ -117,6 +122,8 @@ export function blank(id: string): EditorState {
     isBusy: false,
     notice: undefined,
     conflict: undefined,
+    sides: {},
+    isComparing: false,
     palette: undefined,
     menu: undefined,
     isTextShown: false,
