@@ -16,6 +16,7 @@ from collections.abc import Callable
 from editor_web.live.cell_stop_watch import CellStopWatch
 from editor_web.live.document_watch import DocumentWatch
 from editor_web.live.live_frames import CellStopChanged, DocumentsChanged, LiveDelta, LiveSnapshot, SweepsChanged
+from editor_web.live.presence import PresenceChanged, PresenceRoster
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
 from engine.project import Session
@@ -40,6 +41,9 @@ class LiveClient:
         self._documents: dict[str, str | None] = {}
         self._sweeps: dict[str, SweepLive] = dict(hub.sweeps)
         self._is_stop_due = False
+        self._is_presence_due = False
+        self.page = hub.presence.new_page()
+        """Its number among the pages of this server."""
         self.dirty = asyncio.Event()
         self.dirty.set()
 
@@ -87,7 +91,14 @@ class LiveClient:
         self._is_stop_due = True
         self.dirty.set()
 
-    def frame(self) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | None:
+    def note_presence(self) -> None:
+        """Mark the open pages as changed."""
+        self._is_presence_due = True
+        self.dirty.set()
+
+    def frame(
+        self,
+    ) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | None:
         """Return the pending changes as one frame and clear them; None if there are none. A stop comes first."""
         if self._is_stop_due and not self._snapshot_due:
             self._is_stop_due = False
@@ -99,6 +110,9 @@ class LiveClient:
         if self._sweeps and not self._snapshot_due:
             gone_on, self._sweeps = self._sweeps, {}
             return SweepsChanged(changed=gone_on)
+        if self._is_presence_due and not self._snapshot_due:
+            self._is_presence_due = False
+            return PresenceChanged(page=self.page, present=self._hub.presence.present)
         self.dirty.clear()
         if self._snapshot_due:
             frame: LiveSnapshot | LiveDelta | None = self._snapshot()
@@ -108,7 +122,7 @@ class LiveClient:
             frame = None
         self._snapshot_due = self._is_stop_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
-        if self._documents or self._sweeps:
+        if self._documents or self._sweeps or self._is_presence_due:
             self.dirty.set()
         # The engine reports the end of a run before it has stored it; such a run is read again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
@@ -168,6 +182,8 @@ class LiveHub:
         self.sweeps: dict[str, SweepLive] = {}
         """The sweeps that are being executed."""
         self._unsubscribe: Callable[[], None] | None = None
+        self.presence = PresenceRoster(changed=self._on_presence, now_s=time.time)
+        """Who has the page open."""
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
         self.stop_watch = CellStopWatch(backend, changed=self._on_stop)
         self.documents = DocumentWatch(
@@ -199,6 +215,11 @@ class LiveHub:
     def leave(self, client: LiveClient) -> None:
         """Remove a client."""
         self._clients.discard(client)
+        self.presence.leave(client.page)
+
+    def _on_presence(self) -> None:
+        for client in self._clients:
+            client.note_presence()
 
     def note_sweep(self, sweep: str, live: SweepLive) -> None:
         """Tell all clients how far a sweep is."""

@@ -7,6 +7,7 @@ from typing import Annotated
 import msgspec
 
 from editor_web.cell_view import LayerGroup
+from editor_web.live.presence import PresenceChanged, ShowPresence
 from editor_web.live.robot_status import RobotLive
 from engine.project import CellStop
 from engine.runtime.control import ControlView
@@ -132,5 +133,5 @@ class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k")
     """From the client: answer to a ping."""
 
 
-Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | Ping
-Request = WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | Pong
+Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
+Request = WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | ShowPresence | Pong

@@ -22,6 +22,7 @@ from editor_web.live.live_frames import (
     ShowLayers,
     WatchRun,
 )
+from editor_web.live.presence import PresenceRoster, ShowPresence
 from editor_web.routes.services import role_of, services_of
 from editor_web.security.authentication import OPERATOR
 from editor_web.sockets.page_socket import PageDisconnected, disconnect_page, read_message, send_message
@@ -44,7 +45,7 @@ async def live(socket: WebSocket) -> None:
     await socket.accept()
     client = services.hub.join()
     role = role_of(socket)
-    operator = _Operator(services.backend, allowed=role == OPERATOR)
+    operator = _Operator(services.backend, role, services.hub.presence, client.page)
     scrub = _Scrub(services.cell_view)
     hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role, server_time_s=time.time())
     try:
@@ -63,9 +64,11 @@ async def live(socket: WebSocket) -> None:
 class _Operator:
     """The run that the page of one connection operates."""
 
-    def __init__(self, session: Session, *, allowed: bool) -> None:
+    def __init__(self, session: Session, role: str, presence: PresenceRoster, page: int) -> None:
         self._session = session
-        self._allowed = allowed
+        self._role = role
+        self._presence = presence
+        self._page = page
         self._attached: RunOperator | None = None
 
     def operate(self, run_id: str) -> None:
@@ -73,13 +76,17 @@ class _Operator:
         if self._attached is not None:
             self._attached.detach()
             self._attached = None
-        if not run_id or not self._allowed:
-            return
-        try:
-            self._attached = self._session.operate(run_id)
-        except FlexcellError as error:
-            # The run may have ended; its events and control state show the page whether it operates the run.
-            _log.info("a page cannot operate a run: %s", error)
+        if run_id and self._role == OPERATOR:
+            try:
+                self._attached = self._session.operate(run_id)
+            except FlexcellError as error:
+                # The run may have ended; its events and control state show the page whether it operates the run.
+                _log.info("a page cannot operate a run: %s", error)
+        self._presence.operate(self._page, self._role, self._attached.run_id if self._attached is not None else "")
+
+    def show(self, shown: ShowPresence) -> None:
+        """Let the other pages know what this one shows."""
+        self._presence.show(self._page, self._role, shown)
 
     def lose(self) -> None:
         """Report the operator as lost after the end of the connection."""
@@ -129,6 +136,8 @@ async def _receive(
             case ShowLayers():
                 if view is not None:
                     view.show(request.page, frozenset(request.groups))
+            case ShowPresence():
+                operator.show(request)
             case ScrubPath():
                 scrub.go(request)
             case LookAt():

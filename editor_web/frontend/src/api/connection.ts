@@ -1,6 +1,6 @@
 /** A websocket to the live stream: opened again when it is lost, given up when it is silent. */
 import { api, ServerError } from './client'
-import type { Frame, LookAt, OperateRun, ScrubPath, ShowLayers, WatchRun } from './types'
+import type { Frame, LookAt, OperateRun, ScrubPath, ShowLayers, ShowPresence, WatchRun } from './types'
 import { openSocket } from './socket'
 
 export interface ConnectionEvents {
@@ -14,7 +14,7 @@ export interface ConnectionEvents {
 
 export interface LiveConnection {
   /** Send, or do nothing while it is not open. */
-  readonly send: (request: WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt) => void
+  readonly send: (request: WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | ShowPresence) => void
   readonly close: () => void
 }
 

@@ -10,6 +10,7 @@ import { pageStore } from './pageStore'
 import { useSession } from './session'
 import { PAGE, useShownLayers } from './layerGroups'
 import { usePathScrub } from './pathScrub'
+import { useOwnPresence } from './presence'
 import { afterStop } from './stopStore'
 import type { CellStop, Frame } from './types'
 
@@ -95,6 +96,7 @@ export function connect(): () => void {
       // Another server process has another stop process.
       api.session().catch(() => undefined)
       sendShow()
+      sendPresence()
       if (stream.getState().watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
     },
@@ -111,6 +113,7 @@ export function connect(): () => void {
   stream.setState({ connection: opened })
   const unsubscribe = useShownLayers.subscribe(sendShow)
   const forgetScrub = usePathScrub.subscribe(sendScrub)
+  const forgetPresence = useOwnPresence.subscribe(sendPresence)
   const forgetSession = useSession.subscribe((now, before) => {
     // What was asked for meanwhile was refused.
     if (before.isLoggedOut && !now.isLoggedOut) useLive.setState((live) => ({ generation: live.generation + 1 }))
@@ -118,6 +121,7 @@ export function connect(): () => void {
   return () => {
     unsubscribe()
     forgetScrub()
+    forgetPresence()
     forgetSession()
     received.end()
     opened.close()
@@ -143,6 +147,10 @@ function show(frame: Frame): void {
 
 function sendOperate(): void {
   send({ k: 'operate', run: useLive.getState().operated })
+}
+
+function sendPresence(): void {
+  send({ k: 'present', ...useOwnPresence.getState() })
 }
 
 function sendShow(): void {

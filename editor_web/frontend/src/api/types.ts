@@ -100,7 +100,7 @@ export interface ArmLive {
   readonly tool: ToolLive | null
 }
 
-/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. */
+/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. `problem` is why the last step with this arm failed, empty if it did not. */
 export interface ArmRecovery {
   readonly name: string
   readonly part: string
@@ -110,6 +110,7 @@ export interface ArmRecovery {
   readonly home: string
   readonly home_names: readonly string[]
   readonly at_home: boolean
+  readonly problem: string
 }
 
 /** The arms whose status has changed, at most ten times a second. */
@@ -484,6 +485,20 @@ export interface ConcurrencyCondition {
   readonly preempt: readonly string[]
 }
 
+/** The condition of a breakpoint at the node `path`, to be checked; an empty one only asks for the names. */
+export interface ConditionBody {
+  readonly path: string
+  readonly condition?: string
+  readonly when?: "after" | "before"
+}
+
+/** What is wrong with a condition; empty if nothing is. `names` are the keys and parameters that it may use. */
+export interface ConditionCheck {
+  readonly problem: string
+  readonly hint: string
+  readonly names: readonly string[]
+}
+
 /** What is different in one run of a sweep; the rest is what all its runs have in common. */
 export interface Configuration {
   readonly number: number
@@ -572,7 +587,7 @@ export interface DataDifference {
   readonly kind: "read" | "wrote"
 }
 
-/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run, `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold. */
+/** From the client: subscribe to exactly this data. `number` is returned with the samples of these `fields`, each written `topic:path`. `traffic` requests rates, leases and goals, `topic` the messages of one topic, `run` the userdata of a run with the values of `watches`, `goals` the progress of the goals of a run, `cell` where the items of the cell are and what its tools hold. */
 export interface DataSubscription {
   readonly k: "look"
   readonly number?: number
@@ -580,6 +595,7 @@ export interface DataSubscription {
   readonly topic?: string
   readonly fields?: readonly string[]
   readonly run?: string
+  readonly watches?: readonly Watch[]
   readonly goals?: string
   readonly cell?: boolean
 }
@@ -816,7 +832,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessagePublished | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -974,6 +990,12 @@ export interface GateWait {
   readonly outcome: string
   readonly reasons: readonly string[]
   readonly required: string
+}
+
+/** Another run whose arms are shown as ghosts, at a time of its own clock. */
+export interface GhostRequest {
+  readonly run: string
+  readonly time_s: number
 }
 
 /** Last line: the end of the goal; the device is at rest. */
@@ -1282,12 +1304,12 @@ export interface KeyWriter {
   readonly name: string
 }
 
-/** A field in the form of a node; a switch is on where the document says nothing. */
+/** A field in the form of a node; a switch is on where the document says nothing, a list may be written out. */
 export interface KindField {
   readonly key: string
   readonly label: string
   readonly hint: string
-  readonly control: "switch" | "text"
+  readonly control: "list" | "switch" | "text"
 }
 
 /** The lease of `resource`: its run, node and goal, which may be empty, and its duration. */
@@ -1403,6 +1425,28 @@ export interface MeasureSpread {
   readonly failures: Quantiles | null
 }
 
+/** What was measured at a time of the run's clock, after event `seq`. `path` is the node whose goal was active at the device then, empty for none. `device` is its address: `left`, `left/gripper`. `value` and `limit`, what was asked for or is allowed, are in `unit`; None where there is none. */
+export interface MeasuredMarker {
+  readonly kind: "contact" | "force" | "grasp" | "limit"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly device: string
+  readonly value: number | null
+  readonly unit: string
+  readonly limit: number | null
+  readonly text: string
+}
+
+/** The measured markers of a run up to event `seq`, in order of time. `unread` says why the telemetry is not in them; it is empty where it is. `every` is n where only every n-th message of a topic was read, for there are too many; peaks between those are missing. `left_out` counts dropped markers. */
+export interface MeasuredMarkers {
+  readonly seq: number
+  readonly marks: readonly MeasuredMarker[]
+  readonly unread: string
+  readonly every: number
+  readonly left_out: number
+}
+
 /** A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit. */
 export interface MeasuredValue {
   readonly quantity: string
@@ -1436,6 +1480,16 @@ export interface MessageLogged {
   readonly path: string
   readonly level: string
   readonly message: string
+}
+
+/** A state published a message on a topic. */
+export interface MessagePublished {
+  readonly event: "published"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly topic: string
+  readonly message: unknown
 }
 
 /** A state read a message of a topic. */
@@ -1475,9 +1529,9 @@ export interface NameCandidate {
   readonly detail: string
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
 export interface NameHit {
-  readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "topic"
+  readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "state" | "topic"
   readonly id: string
   readonly title: string
   readonly detail: string
@@ -1578,7 +1632,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `taken` counts how often its machine has followed each outcome of this node, since the machine was entered; an undone node counts anew. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1587,6 +1641,7 @@ export interface NodeLive {
   readonly duration_s: number
   readonly cause: string
   readonly last_transition: string
+  readonly taken: Dict<number>
   readonly plan: PlanLive | null
 }
 
@@ -1772,26 +1827,29 @@ export interface PastRunsBody {
   readonly counts: Dict<number>
 }
 
-/** The scopes of a run after event `seq`, by container path; `problem` tells why there are none. */
+/** The scopes of a run after event `seq`, by container path, and the values of the watches, in their order. `problem` tells why there are none. */
 export interface PastUserdata {
   readonly seq: number
   readonly scopes: Dict<ScopeView>
+  readonly watches: readonly WatchValue[]
   readonly problem: string
 }
 
-/** From the page: show this run at this time of its clock; null shows the live cell. */
+/** From the page: show this run at this time of its clock, with the arms of another; null shows the live cell. */
 export interface PastViewRequest {
   readonly run: string
   readonly time_s: number | null
+  readonly ghost?: GhostRequest | null
 }
 
-/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. */
+/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. `ghost_problem` says why the arms of the other run are not shown. */
 export interface PastViewState {
   readonly run: string
   readonly time_s: number
   readonly from_s: number
   readonly until_s: number
   readonly problem: string
+  readonly ghost_problem: string
 }
 
 /** Insert nodes, in the form that `copy` returns, into a container. */
@@ -1867,13 +1925,39 @@ export interface Pose {
   readonly frame: string
 }
 
-/** From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop. */
+/** From the page: this arm is shown to be jogged; answered with its readiness, now and after every stop. Without a name no arm is shown any more. */
 export interface PrepareJogging {
   readonly k: "prepare"
   readonly arm: string
 }
 
-/** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. */
+/** One open page. Attributes: page: Its number since the server started. name: As the person calls themselves; the role and the number without. role: What the page may do. document: The behavior that it shows; empty for none. node: The node that is selected there; empty for none. edits: Whether it is the editor that shows it. operates: The run that it operates; empty for none. since_s: When it took control of that run, seconds since 1970. */
+export interface Presence {
+  readonly page: number
+  readonly name: string
+  readonly role: string
+  readonly document: string
+  readonly node: string
+  readonly edits: boolean
+  readonly operates: string
+  readonly since_s: number | null
+}
+
+/** All open pages; `page` is the number of the one that this is sent to. */
+export interface PresenceChanged {
+  readonly k: "presence"
+  readonly page: number
+  readonly present: readonly Presence[]
+}
+
+/** A press has moved nothing: it was released, and the arm could not begin to move within `within_s` after that. */
+export interface PressDropped {
+  readonly k: "dropped"
+  readonly arm: string
+  readonly within_s: number
+}
+
+/** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. `value` is shown in the place of an entry: the fields of one of this `kind`. */
 export interface PreviewTaught {
   readonly k: "look"
   readonly kind?: string
@@ -1881,6 +1965,7 @@ export interface PreviewTaught {
   readonly capture?: number
   readonly revision?: number
   readonly arm?: string
+  readonly value?: Dict<unknown> | null
   readonly place?: number
 }
 
@@ -2337,6 +2422,23 @@ export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
+}
+
+/** From the page: what is marked in its 3D view, in the place of what was before. */
+export interface ShowMarks {
+  readonly k: "mark"
+  readonly points?: readonly (readonly [number, number, number])[]
+  readonly box?: readonly [readonly [number, number, number], readonly [number, number, number]] | null
+  readonly axes?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
+}
+
+/** From the client: what this page shows; the last one counts, and goes with the connection. */
+export interface ShowPresence {
+  readonly k: "present"
+  readonly name?: string
+  readonly document?: string
+  readonly node?: string
+  readonly edits?: boolean
 }
 
 /** A request to shrink a failing run; `same` is what must stay the same: how it ends, or its root cause too. */
@@ -2880,6 +2982,22 @@ export interface UngroupNode {
   readonly path: string
 }
 
+/** One place that uses it. `path` is the node in this document; empty for the document itself. `how` says in what way: `runs`, `reads pose`, `writes`. `line` and `column` count from 1. */
+export interface Usage {
+  readonly document: string
+  readonly behavior: string
+  readonly path: string
+  readonly how: string
+  readonly line: number
+  readonly column: number
+}
+
+/** All usages, by document and line; `unread` are the documents that cannot be read, and may have more. */
+export interface Usages {
+  readonly found: readonly Usage[]
+  readonly unread: readonly string[]
+}
+
 /** A node appended `value` to the list at `key` in the scope of the container `scope`. */
 export interface UserdataAppended {
   readonly event: "userdata_appended"
@@ -2891,12 +3009,13 @@ export interface UserdataAppended {
   readonly value: unknown
 }
 
-/** The changed scopes, by the path of their container; null for a removed one. `first` means that the frame contains all scopes. */
+/** The changed scopes, by the path of their container; null for a removed one. `first` means that the frame contains all scopes. `watches` are the values of all watches, in their order. */
 export interface UserdataFrame {
   readonly k: "userdata"
   readonly run: string
   readonly first: boolean
   readonly scopes: Dict<ScopeView | null>
+  readonly watches: readonly WatchValue[]
   readonly problem: string
 }
 
@@ -2958,20 +3077,32 @@ export interface Visit {
   readonly cause: string
 }
 
+/** An expression, with or without `${…}`, as the node at `path` would read it. Without a path the innermost active container that has a name counts. */
+export interface Watch {
+  readonly expression: string
+  readonly path?: string
+}
+
 /** From the client: watch this run (empty: the list of runs only); the response is a snapshot. */
 export interface WatchRun {
   readonly k: "watch"
   readonly run?: string
 }
 
+/** Its value; `problem` says why there is none. */
+export interface WatchValue {
+  readonly value: unknown
+  readonly problem: string
+}
+
 export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame
 
 export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 
-export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | Ping
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | JogReadiness | JogBlockFrame | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame
 
-export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
+export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks

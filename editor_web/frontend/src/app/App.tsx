@@ -10,6 +10,7 @@ import { queryKeys } from '../api/queryKeys'
 import { showKeys, useKeyMap, useKeyOf } from '../api/keyMap'
 import { findUsages, useUsages } from '../api/usages'
 import { openSearch, type PageCommand } from '../api/search'
+import { showPresence } from '../api/presence'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
@@ -74,6 +75,7 @@ export function App() {
   useEffect(connect, [])
   usePageKeys()
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
+  useEffect(() => showPresence({ document: behaviorId ?? '', node: '', edits: isEditing }), [behaviorId, isEditing])
   useEffect(() => {
     const name = behaviorId ? nameOfPath(behaviorId) : (session?.cell_name ?? '')
     document.title = [name, 'flexcell'].filter(Boolean).join(' · ')

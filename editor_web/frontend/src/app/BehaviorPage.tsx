@@ -8,6 +8,7 @@ import { useGoalsOf } from '../api/goals'
 import { clearRefusal, showRefusal } from '../api/refusal'
 import { hasCellView } from '../api/session'
 import { useStartHere } from '../api/startHere'
+import { showPresence } from '../api/presence'
 import { runSubject } from '../api/timeline'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
@@ -100,6 +101,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
   const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
   const mayOperate = session?.role === 'operator'
   useGoalsOf(run && isActive(run) ? run.id : undefined)
+  useEffect(() => showPresence({ node: selected ?? '' }), [selected])
   useFailed(run, () => {
     setTab('failure')
     askTab({ tab: 'Failure' })

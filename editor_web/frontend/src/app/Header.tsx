@@ -1,16 +1,19 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
 import { ActionIcon, Box, Button, Group, Text, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
 import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
-import { useState, type MouseEvent } from 'react'
+import { Suspense, useState, type MouseEvent } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import type { RunView } from '../api/types'
+import { lazyView } from '../components/lazyView'
 import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { runStateOf, runWords } from '../document/runState'
 import { nameOf, RunTime } from '../features/runs/RunList'
 import classes from './Header.module.css'
 import { CELL_HREF, RUNS_HREF, TEACH_HREF } from './route'
+
+const People = lazyView(async () => (await import('../features/presence/People')).People)
 
 export interface HeaderProps {
   readonly cellName: string
@@ -116,6 +119,9 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
           )}
         </div>
       )}
+      <Suspense fallback={null}>
+        <People />
+      </Suspense>
       {named && mayOperate && <StopButton run={named} />}
       <SchemeSwitch />
     </>

@@ -1,6 +1,18 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
 import type { Dict } from './dict'
-import type { CellStop, ControlView, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunView, LiveSnapshot, SweepLive } from '../api/types'
+import type {
+  CellStop,
+  ControlView,
+  LiveDelta,
+  Frame,
+  LogLine,
+  NodeLive,
+  Presence,
+  RobotLive,
+  RunView,
+  LiveSnapshot,
+  SweepLive,
+} from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -31,6 +43,9 @@ export interface LiveState {
   readonly sweeps: Dict<SweepLive>
   /** The latest stop of the cell, until it is closed. */
   readonly stop: CellStop | null
+  /** All open pages, and the number of this one among them. */
+  readonly present: readonly Presence[]
+  readonly page: number
 }
 
 export const EMPTY: LiveState = {
@@ -52,6 +67,8 @@ export const EMPTY: LiveState = {
   documents: {},
   sweeps: {},
   stop: null,
+  present: [],
+  page: 0,
 }
 
 /** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
@@ -74,6 +91,8 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
       return { ...state, sweeps: { ...state.sweeps, ...frame.changed } }
     case 'stop':
       return { ...state, stop: frame.stop }
+    case 'presence':
+      return { ...state, page: frame.page, present: frame.present }
     case 'ping':
       return state
   }

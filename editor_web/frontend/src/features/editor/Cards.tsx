@@ -1,5 +1,5 @@
 /** The nodes of the editor's canvas: states, containers open and closed, parts of trees, outcomes, rules. */
-import { VisuallyHidden } from '@mantine/core'
+import { Avatar, VisuallyHidden } from '@mantine/core'
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import {
   IconAlertTriangleFilled,
@@ -13,6 +13,8 @@ import {
   IconShieldHalf,
 } from '@tabler/icons-react'
 import { memo } from 'react'
+import { useOthersAt } from '../../api/presence'
+import { initialsOf } from '../../document/presence'
 import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
@@ -21,6 +23,7 @@ import classes from './cards.module.css'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
 import { NodeIcon } from './NodeIcon'
 import { useConflicts, useMark, useTransitionFindings } from './marks'
+import { useEditor } from './store'
 
 const QUIET = { color: 'var(--quiet)' }
 
@@ -159,10 +162,24 @@ function Extras({ data: { node } }: { data: CardData }) {
 function MarkIcon(props: { path: string; inside: boolean }) {
   return (
     <>
+      <OthersHere path={props.path} />
       <ConflictIcon {...props} />
       <FindingIcon {...props} />
     </>
   )
+}
+
+/** Who else has the node selected. */
+function OthersHere({ path }: { path: string }) {
+  const others = useOthersAt(
+    useEditor((s) => s.id),
+    path,
+  )
+  return others.map(({ page, name }) => (
+    <Avatar key={page} size={18} color="initials" name={name} title={`${name} has it selected`} data-other={name}>
+      {initialsOf(name)}
+    </Avatar>
+  ))
 }
 
 /** Both the draft and the file have changed something of the node. */

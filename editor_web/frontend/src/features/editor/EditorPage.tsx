@@ -16,6 +16,7 @@ import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
 import { setPageActions } from './pageActions'
+import { showPresence } from '../../api/presence'
 import { ConflictDialog } from './ConflictDialog'
 import { ConflictPanel } from './ConflictPanel'
 import { forgetDataFlow, useDataFlow } from './dataFlow'
@@ -107,6 +108,8 @@ function useUnsavedGuard(): void {
 
 function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, preview }: EditorPageProps) {
   useEffect(() => offerCommands(searchCommands), [])
+  const selected = useEditor((s) => s.selection.at(-1) ?? '')
+  useEffect(() => showPresence({ node: selected }), [selected])
   const isTextShown = useEditor((s) => s.isTextShown)
   const isBusy = useEditor((s) => s.isBusy)
   const hasVersions = useFileDialog((s) => s.open === 'versions')
