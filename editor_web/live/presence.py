@@ -60,7 +60,7 @@ class PresenceRoster:
 
     @property
     def present(self) -> tuple[Presence, ...]:
-        """The pages that have said what they show, the oldest first."""
+        """The pages that have reported what they show, the oldest first."""
         return tuple(self._present.values())
 
     def new_page(self) -> int:

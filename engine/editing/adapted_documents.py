@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.editing.adaptation.adaptation import Adaptation, adapt, proposed_file
+from engine.editing.adaptation.adaptation import AdaptedBehavior, adapt, proposed_file
 from engine.editing.document_repository import DocumentRepository
 from engine.editing.stored_document import StoredDocument
 from engine.errors import DocumentError
@@ -12,7 +12,7 @@ from engine.errors import DocumentError
 
 def plan_adaptation(
     documents: DocumentRepository, document_id: str, *, new_id: str = "", name: str = "", choices: Mapping[str, str]
-) -> tuple[str, Adaptation]:
+) -> tuple[str, AdaptedBehavior]:
     """Return the id of the new document and what would be written; nothing is.
 
     Args:

@@ -11,7 +11,7 @@ import typer
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_pairs
 from engine.document.cell import load_cell
-from engine.editing.adaptation.adaptation import Adaptation, adapt, proposed_file
+from engine.editing.adaptation.adaptation import AdaptedBehavior, adapt, proposed_file
 from engine.editing.adaptation.name_mapping import MappedName
 from engine.editing.project_context import ProjectContext
 from engine.editing.versions import write_atomically
@@ -77,7 +77,7 @@ def _line(each: MappedName) -> str:
     return f"+ {each.kind} {each.name} -> {each.target}" + (f" ({each.reason})" if each.reason else "")
 
 
-def _write(made: Adaptation) -> None:
+def _write(made: AdaptedBehavior) -> None:
     for each in reversed(made.documents):
         try:
             each.file.parent.mkdir(parents=True, exist_ok=True)

@@ -50,7 +50,7 @@ class AdaptationPlan(msgspec.Struct, frozen=True, kw_only=True):
     findings: tuple[FindingView, ...]
 
 
-class Adaptation(msgspec.Struct, frozen=True, kw_only=True):
+class AdaptedBehavior(msgspec.Struct, frozen=True, kw_only=True):
     """A behavior for another cell, not written yet.
 
     `documents` are the adapted behavior, then copies of the behaviors inside it that name things of its own cell.
@@ -63,7 +63,7 @@ class Adaptation(msgspec.Struct, frozen=True, kw_only=True):
 
 def adapt(
     text: str, *, file: Path, output: Path, name: str = "", cell: Cell, context: ProjectContext, choices: Choices
-) -> Adaptation:
+) -> AdaptedBehavior:
     """Return a behavior as it would be for another cell; nothing is written.
 
     Args:
@@ -107,7 +107,7 @@ def adapt(
         undecided=tuple(dict.fromkeys(reader.undecided)),
         findings=tuple(finding_view(finding, output) for finding in findings),
     )
-    return Adaptation(name=name, plan=plan, documents=documents)
+    return AdaptedBehavior(name=name, plan=plan, documents=documents)
 
 
 def proposed_file(file: Path, cell: Cell) -> Path:

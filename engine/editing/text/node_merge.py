@@ -26,7 +26,7 @@ class NodeConflict(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         path: The node, `document` for the document itself.
         field: The field, `with.speed`; empty for the node as a whole: one side removed or replaced it.
-        base: What both began with; None where it did not exist, as for the two sides.
+        base: What both started with; None where it did not exist, as for the two sides.
         mine: The value of who saves.
         theirs: The value in the file.
         side: Which of them is in the merged text.
@@ -57,15 +57,15 @@ def merge_by_nodes(base: str, mine: str, theirs: str, *, file: str, sides: Mappi
     """Merge two texts that were made of the same one; None if they cannot be read, or not be written as one.
 
     Args:
-        base: What both began with.
+        base: What both started with.
         mine: The text of who saves.
         theirs: The text of the file, whose layout is kept.
         file: Name of the document.
         sides: The choices by `NodeConflict.key`; without one a conflict has the value of who saves.
     """
     try:
-        began, draft = Draft(base, file=file), Draft(theirs, file=file)
-        merging = _Merging(began.data, draft.adopt(mine), draft.data, sides)
+        started, draft = Draft(base, file=file), Draft(theirs, file=file)
+        merging = _Merging(started.data, draft.adopt(mine), draft.data, sides)
         merging.document()
         text = _by_lines(base, mine, theirs, draft.data, file) or draft.text()
     except (DocumentError, EditRefused):
@@ -132,11 +132,11 @@ class _Merging:
                 self._decide(base, mine, theirs, path, field, put)
                 return
         if isinstance(mine, dict) and isinstance(theirs, dict) and isinstance(base, dict | _Absent):
-            began = cast("Plain", base) if isinstance(base, dict) else {}
+            started = cast("Plain", base) if isinstance(base, dict) else {}
             one, two = cast("Plain", mine), cast("Plain", theirs)
             if field.endswith(".states"):
-                began, one = _with_renamed(began, one, two), _with_renamed_back(began, one, two)
-            self._mappings(began, one, two, path, field)
+                started, one = _with_renamed(started, one, two), _with_renamed_back(started, one, two)
+            self._mappings(started, one, two, path, field)
         elif isinstance(mine, list) and isinstance(theirs, list) and isinstance(base, list):
             self._lists(
                 cast("list[object]", base), cast("list[object]", mine), cast("list[object]", theirs), path, field, put
@@ -182,8 +182,8 @@ class _Merging:
             path, field = field.removeprefix("notes."), "note"
         side = self._sides.get(f"{path} {field}", "mine")
         values = (None if isinstance(each, _Absent) else each for each in (base, mine, theirs))
-        began, one, two = values
-        self.conflicts.append(NodeConflict(path=path, field=field, base=began, mine=one, theirs=two, side=side))
+        started, one, two = values
+        self.conflicts.append(NodeConflict(path=path, field=field, base=started, mine=one, theirs=two, side=side))
         if side == "mine":
             put(mine)
 

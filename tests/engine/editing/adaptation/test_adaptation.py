@@ -8,7 +8,7 @@ import pytest
 
 from engine.document.cell import load_cell
 from engine.editing import ProjectContext, adapt
-from engine.editing.adaptation.adaptation import Adaptation, proposed_file
+from engine.editing.adaptation.adaptation import AdaptedBehavior, proposed_file
 from engine.errors import DocumentError, FlexcellError
 from tests.engine.editing.edit_fixtures import STATES, difference
 
@@ -110,14 +110,16 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def adapted(folder: Path, choices: dict[str, str] | None = None, *, text: str = WORK, output: str = "") -> Adaptation:
+def adapted(
+    folder: Path, choices: dict[str, str] | None = None, *, text: str = WORK, output: str = ""
+) -> AdaptedBehavior:
     cell, file = load_cell(folder / "cells/new.yaml"), folder / "work.yaml"
     target = folder / output if output else proposed_file(file, cell)
     context = ProjectContext(STATES, folder, folder)
     return adapt(text, file=file, output=target, cell=cell, context=context, choices=choices or {})
 
 
-def targets(made: Adaptation) -> dict[str, str]:
+def targets(made: AdaptedBehavior) -> dict[str, str]:
     return {each.key: each.target for each in made.plan.names}
 
 
