@@ -2,18 +2,12 @@
 import { useShallow } from 'zustand/react/shallow'
 import { useLive } from './liveStore'
 import { pageStore } from './pageStore'
-import type { Presence } from './types'
+import type { Presence, ShowPresence } from './types'
 
 const NAME = 'flexcell.name'
 
-/** What this page shows to the others. */
-export interface OwnPresence {
-  /** As the person calls themselves; empty for the name that the server gives. */
-  readonly name: string
-  readonly document: string
-  readonly node: string
-  readonly edits: boolean
-}
+/** What this page shows to the others; without a name it has the one that the server gives. */
+export type OwnPresence = Required<Omit<ShowPresence, 'k'>>
 
 export const useOwnPresence = pageStore<OwnPresence>(() => ({
   name: localStorage.getItem(NAME) ?? '',
