@@ -28,7 +28,6 @@ from editor_web.http_bodies.json_schemas import BodyTypes, component_schemas
 from editor_web.live.hub import LiveHub
 from editor_web.past import OpenRunCache
 from editor_web.routes import (
-    adaptation,
     behaviors,
     breakpoints,
     bus,
@@ -78,12 +77,11 @@ _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
     (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
 )
 
-# `adaptation` and `relations` before `documents`, and curves before `past`, whose ids match any address.
+# `relations` before `documents`, and curves before `past`, whose ids match any address.
 _ROUTERS = (
     session.router,
     breakpoints.router,
     behaviors.router,
-    adaptation.router,
     relations.router,
     documents.router,
     catalogue.router,

@@ -1,9 +1,10 @@
-"""Fixes of a document's findings, references to it, moving, restoring, and drawing of older versions."""
+"""Fixes of a document's findings, references to it, moving, adapting, restoring, and drawing of older versions."""
 
 from __future__ import annotations
 
 from msgspec.structs import asdict
 
+from editor_web.http_bodies.adaptation_bodies import AdaptationBody, AdaptationRequest
 from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.http_bodies.document_bodies import DocumentBody, TextBody, document_body
 from editor_web.http_bodies.reference_bodies import (
@@ -21,7 +22,9 @@ from engine.editing import (
     ReferringBehavior,
     compare_texts,
     move_with_references,
+    plan_adaptation,
     referrers,
+    write_adaptation,
 )
 from engine.editing.fixes import fixes_of
 
@@ -85,3 +88,24 @@ def compare(document_id: str, body: CompareBody, services: ServicesOf) -> Docume
     """Compare two texts of a document node by node."""
     services.documents.file_of(document_id)
     return compare_texts(body.before, body.after, file=document_id)
+
+
+@router.post("/documents/{document_id:path}/adaptation")
+def propose_adaptation(document_id: str, body: AdaptationRequest, services: ServicesOf) -> AdaptationBody:
+    """Map the names of a behavior to the open cell and check the result; nothing is written."""
+    documents = services.documents
+    new_id, made = plan_adaptation(documents, document_id, new_id=body.id, name=body.name, choices=body.names)
+    return AdaptationBody(
+        id=new_id,
+        name=made.name,
+        plan=made.plan,
+        copies=tuple(each.file.relative_to(documents.project).as_posix() for each in made.documents[1:]),
+    )
+
+
+@router.post("/documents/{document_id:path}/adapt", status_code=201)
+def adapt_document(document_id: str, body: AdaptationRequest, services: ServicesOf) -> DocumentBody:
+    """Write the adapted behavior as a new document, with copies of nested behaviors that name things of its cell."""
+    documents = services.documents
+    written = write_adaptation(documents, document_id, new_id=body.id, name=body.name, choices=body.names)
+    return document_body(written, documents.examine(written.id, written.text))

@@ -127,7 +127,7 @@ def check(
 
 def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], output: TextIO, *, likely: bool) -> bool:
     """Fix documents and print what was fixed; False if one could not be written."""
-    from engine.cli.commands.check_fix import fix_file, fix_lines
+    from engine.cli.check_fix import fix_file, fix_lines
 
     is_written = True
     for file in files:

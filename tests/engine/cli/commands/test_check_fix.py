@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.cli.commands import check_fix
+from engine.cli import check_fix
 from engine.errors import FlexcellError
 from engine.registry import load_states
 from tests.engine.cli.command import flexcell
