@@ -100,7 +100,7 @@ export interface ArmLive {
   readonly tool: ToolLive | null
 }
 
-/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. */
+/** What is open at one arm after a stop. `part` is the name of the part that its tool holds, `?` when unknown, empty for none; `kept` is true once an operator has decided that the arm keeps it. `has_moved` is true once it is elsewhere than where it was stopped. `home` is the joints entry of its home configuration, empty if there is none; `home_names` are those looked for. `problem` is why the last step with this arm failed, empty if it did not. */
 export interface ArmRecovery {
   readonly name: string
   readonly part: string
@@ -110,6 +110,7 @@ export interface ArmRecovery {
   readonly home: string
   readonly home_names: readonly string[]
   readonly at_home: boolean
+  readonly problem: string
 }
 
 /** The arms whose status has changed, at most ten times a second. */
@@ -831,7 +832,7 @@ export interface ErrorBody {
 
 /** A page of a run's events from the journal; `after=last` requests the next page. */
 export interface EventsBody {
-  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
+  readonly events: readonly (RunStarted | RunResumed | NodeEntered | NodeExited | UserdataAppended | UserdataWritten | TransitionTaken | NodeDiverted | NodeSkipped | BranchesPreempted | NodeRetried | StatusChanged | GoalSent | GoalFinished | GoalHeld | GoalResumed | ServiceCalled | ServiceAnswered | MessagePublished | MessageReceived | MessageLogged | OperatorCommanded | GateReached | GatePassed | OutcomeRequested | OutcomeWithdrawn | PauseConfirmed | OperatorChanged | UndoStarted | UndoEnded | RunSteppedBack | BehaviorChanged | FaultInjected | LoopBlocked | NodeAbandoned | StopRequested | RunEnded)[]
   readonly last: number
 }
 
@@ -989,6 +990,12 @@ export interface GateWait {
   readonly outcome: string
   readonly reasons: readonly string[]
   readonly required: string
+}
+
+/** Another run whose arms are shown as ghosts, at a time of its own clock. */
+export interface GhostRequest {
+  readonly run: string
+  readonly time_s: number
 }
 
 /** Last line: the end of the goal; the device is at rest. */
@@ -1418,6 +1425,28 @@ export interface MeasureSpread {
   readonly failures: Quantiles | null
 }
 
+/** What was measured at a time of the run's clock, after event `seq`. `path` is the node whose goal was active at the device then, empty for none. `device` is its address: `left`, `left/gripper`. `value` and `limit`, what was asked for or is allowed, are in `unit`; None where there is none. */
+export interface MeasuredMarker {
+  readonly kind: "contact" | "force" | "grasp" | "limit"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly device: string
+  readonly value: number | null
+  readonly unit: string
+  readonly limit: number | null
+  readonly text: string
+}
+
+/** The measured markers of a run up to event `seq`, in order of time. `unread` says why the telemetry is not in them; it is empty where it is. `every` is n where only every n-th message of a topic was read, for there are too many; peaks between those are missing. `left_out` counts dropped markers. */
+export interface MeasuredMarkers {
+  readonly seq: number
+  readonly marks: readonly MeasuredMarker[]
+  readonly unread: string
+  readonly every: number
+  readonly left_out: number
+}
+
 /** A measured number of a failure, in `unit`, and what was expected: from `least` to `most`, null for no limit. */
 export interface MeasuredValue {
   readonly quantity: string
@@ -1451,6 +1480,16 @@ export interface MessageLogged {
   readonly path: string
   readonly level: string
   readonly message: string
+}
+
+/** A state published a message on a topic. */
+export interface MessagePublished {
+  readonly event: "published"
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly topic: string
+  readonly message: unknown
 }
 
 /** A state read a message of a topic. */
@@ -1593,7 +1632,7 @@ export interface NodeExited {
   readonly cause?: Cause | null
 }
 
-/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `plan` is the last path that this visit planned. */
+/** One node: idle, active, done, failed, stopped or skipped. `visits` counts activations, so that a visit shorter than a frame is visible. Times are on the run's clock; `duration_s` is that of the last finished visit. `last_transition` is the last transition of a machine, as `source|outcome`. `taken` counts how often its machine has followed each outcome of this node, since the machine was entered; an undone node counts anew. `plan` is the last path that this visit planned. */
 export interface NodeLive {
   readonly status: string
   readonly visits: number
@@ -1602,6 +1641,7 @@ export interface NodeLive {
   readonly duration_s: number
   readonly cause: string
   readonly last_transition: string
+  readonly taken: Dict<number>
   readonly plan: PlanLive | null
 }
 
@@ -1795,19 +1835,21 @@ export interface PastUserdata {
   readonly problem: string
 }
 
-/** From the page: show this run at this time of its clock; null shows the live cell. */
+/** From the page: show this run at this time of its clock, with the arms of another; null shows the live cell. */
 export interface PastViewRequest {
   readonly run: string
   readonly time_s: number | null
+  readonly ghost?: GhostRequest | null
 }
 
-/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. */
+/** What a page shows: a run at a time of its recording; or a `problem`, and the live cell. `ghost_problem` says why the arms of the other run are not shown. */
 export interface PastViewState {
   readonly run: string
   readonly time_s: number
   readonly from_s: number
   readonly until_s: number
   readonly problem: string
+  readonly ghost_problem: string
 }
 
 /** Insert nodes, in the form that `copy` returns, into a container. */
@@ -1883,7 +1925,7 @@ export interface Pose {
   readonly frame: string
 }
 
-/** From the page: this arm is to be jogged soon; answered with its readiness, now and after every stop. */
+/** From the page: this arm is shown to be jogged; answered with its readiness, now and after every stop. Without a name no arm is shown any more. */
 export interface PrepareJogging {
   readonly k: "prepare"
   readonly arm: string
@@ -1906,6 +1948,13 @@ export interface PresenceChanged {
   readonly k: "presence"
   readonly page: number
   readonly present: readonly Presence[]
+}
+
+/** A press has moved nothing: it was released, and the arm could not begin to move within `within_s` after that. */
+export interface PressDropped {
+  readonly k: "dropped"
+  readonly arm: string
+  readonly within_s: number
 }
 
 /** From the page: preview this arm along an entry or a capture; without an arm, clear the preview. `place` 0 replaces all previews; places 1 to 4 are shown side by side, each in its colour. `value` is shown in the place of an entry: the fields of one of this `kind`. */
@@ -3054,6 +3103,6 @@ export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Sweeps
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | JogReadiness | JogBlockFrame | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame
 
 export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks
