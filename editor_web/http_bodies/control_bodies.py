@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import msgspec
-from msgspec import Meta
 
 from editor_web.http_bodies.common_bodies import Name, RequestBody
-from engine.runtime.control import AutonomyLevel, Breakpoint, GatePoint, StepMode
+from engine.runtime.control import AutonomyLevel, Breakpoint, StepMode
 
 
 class StepBody(RequestBody, frozen=True, kw_only=True):
@@ -52,14 +49,6 @@ class BreakpointsBody(RequestBody, frozen=True, kw_only=True):
     """All breakpoints of a run or a behavior; they replace the previous ones."""
 
     breakpoints: tuple[Breakpoint, ...]
-
-
-class ConditionBody(RequestBody, frozen=True, kw_only=True):
-    """The condition of a breakpoint at the node `path`, to be checked; an empty one only asks for the names."""
-
-    path: Annotated[str, Meta(max_length=4000)]
-    condition: Annotated[str, Meta(max_length=1000)] = ""
-    when: GatePoint = "before"
 
 
 class HotChangeBody(RequestBody, frozen=True, kw_only=True):

@@ -80,7 +80,7 @@ def _marker(sent: GoalSent, end: GoalFinished) -> MeasuredMarker | None:
         return _made("force", end, device, largest_n, None, text)
     is_held = result.get("held")
     if is_held is True or (is_held is False and skill in _TO_HOLD):
-        # A magnet pulls; fingers press.
+        # Not every tool presses: some pull.
         force_n = _number(result, "force_n") if "force_n" in result else _number(result, "pull_n")
         return _made("grasp", end, device, force_n, _number(sent.request, "force_n"), _held_text(device, result))
     return None

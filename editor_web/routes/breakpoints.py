@@ -5,7 +5,7 @@ from __future__ import annotations
 from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.common_bodies import ErrorBody
-from editor_web.http_bodies.control_bodies import BreakpointsBody, ConditionBody
+from editor_web.http_bodies.control_bodies import BreakpointsBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.check import ConditionCheck, check_condition
@@ -41,8 +41,8 @@ async def keep_breakpoints(behavior_id: str, body: BreakpointsBody, services: Se
 
 
 @router.post("/{behavior_id:path}/condition")
-def check_breakpoint_condition(behavior_id: str, body: ConditionBody, services: ServicesOf) -> ConditionCheck:
-    """Check a condition at a node of the saved behavior; nothing is kept."""
+def check_breakpoint_condition(behavior_id: str, body: Breakpoint, services: ServicesOf) -> ConditionCheck:
+    """Check the condition of a breakpoint at a node of the saved behavior; nothing is kept."""
     documents = services.documents
     behavior = documents.library.behavior(behavior_id)
-    return check_condition(behavior, documents.catalogue, body.path, body.condition, after=body.when == "after")
+    return check_condition(behavior, documents.catalogue, body.path, body.condition or "", after=body.when == "after")

@@ -58,8 +58,8 @@ class WaitForMessage(State, frozen=True, kw_only=True):
             await asyncio.wait((reading, pause))
         if ended:
             return Outcome("received", {"message": reading.result()})
-        wanted = f" with {self.condition}" if self.condition else ""
-        message = f"{self.topic} had no message{wanted} within {self.timeout_s:g} s"
+        matching = f" with {self.condition}" if self.condition else ""
+        message = f"{self.topic} had no message{matching} within {self.timeout_s:g} s"
         return Outcome("timeout", cause=Cause(message=message, where=ctx.path, kind=self.state_name))
 
     async def _message(self, ctx: Context) -> object:

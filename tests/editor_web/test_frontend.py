@@ -51,8 +51,12 @@ def test_packages_that_a_link_leads_to_are_never_emptied(tmp_path: Path, monkeyp
     (source / "package-lock.json").write_text("{}", encoding="utf-8")
     (source / "node_modules").symlink_to(elsewhere)
     called: list[tuple[str, ...]] = []
+
+    def npm(*arguments: str) -> None:
+        called.append(arguments)
+
     monkeypatch.setattr(hatch_build, "SOURCE", source)
-    monkeypatch.setattr(hatch_build, "npm", lambda *arguments: called.append(arguments))
+    monkeypatch.setattr(hatch_build, "npm", npm)
     with pytest.raises(RuntimeError, match=r"is a link to .*elsewhere.*: remove the link"):
         hatch_build.install()
     (elsewhere / ".lock-digest").write_text(hashlib.sha256(b"{}").hexdigest(), encoding="ascii")

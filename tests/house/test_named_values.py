@@ -15,8 +15,8 @@ NAMES = frozenset(
     ("cell_name", "new_cell_name", "cell_label", "entry", "entry_of", "new_entry", "new_entry_of", "entry_kind")
 )
 KINDS_OF_THE_CELL = ("cell_name", "new_cell_name", "cell_label")
-PROSE = frozenset(("flow.Log.message",))
-"""What is written for people, and names nothing."""
+NAMELESS = frozenset(("flow.Log.message", "bus.CheckMessage.condition", "bus.WaitForMessage.condition"))
+"""What is written for people, and expressions over a message."""
 
 
 def _texts(schema: Schema, definitions: Mapping[str, Schema], at: str, says: frozenset[str]) -> Iterator[str]:
@@ -51,7 +51,7 @@ def _unnamed(where: str, schema: Schema) -> list[str]:
 def test_no_parameter_that_names_something_is_a_plain_text() -> None:
     """A new one names its kind: `Meta(extra_json_schema={"cell_name": "robot"})`; see the guide on states."""
     found = {place for where, schema in _parameters() for place in _unnamed(where, schema)}
-    assert found == PROSE
+    assert found == NAMELESS
 
 
 @pytest.mark.parametrize(

@@ -308,7 +308,7 @@ async def test_breakpoints_are_kept_beside_the_file_for_later_runs(project: Path
         assert wrong.status_code == 422
         assert (await http.get(address)).json() == kept
         assert "root/two" in (project / "behaviors" / "steps.breakpoints.yaml").read_text(encoding="utf-8")
-        asked = {"path": "root/two", "condition": "valu == 1", "when": "before"}
+        asked = {"path": "root/two", "if": "valu == 1", "when": "before"}
         checked = (await http.post(f"{address}/condition", json=asked)).json()
         assert checked["names"] == ["value"]
         assert checked["problem"] == "`valu` is not defined before `two`"

@@ -48,7 +48,7 @@ OPEN = GripperState(time_s=0.0, width_m=0.08, force_n=0.0, held=False)
 
 
 @dataclass
-class Bench:
+class DeviceBus:
     """A gripper at `left/gripper`, outputs at `left`, and the topics of a cell."""
 
     bus: SkillBus
@@ -84,7 +84,7 @@ class Ran:
 
     result: RunResult
     events: tuple[Event, ...]
-    bench: Bench
+    bench: DeviceBus
     ended_s: float
 
     @property
@@ -107,7 +107,7 @@ def ran(text: str, *presses: tuple[float, str]) -> Ran:
 
     async def main() -> Ran:
         async with SkillBus(new_clock()) as bus:
-            bench = Bench(bus)
+            bench = DeviceBus(bus)
             for at_s, key in presses:
                 asyncio.get_running_loop().call_later(at_s, bench.key, key)
             run = Run(plan, run="r", bus=bus)
@@ -266,7 +266,7 @@ def test_a_value_that_does_not_fit_the_topic_is_refused(value: str, says: str) -
 def test_the_command_topics_of_devices_are_not_for_behaviors() -> None:
     async def main() -> None:
         async with SkillBus(new_clock()) as bus:
-            bench = Bench(bus)
+            bench = DeviceBus(bus)
             taken: list[GripperState] = []
             bus.topic("left/jog", GripperState).subscribe_commands(taken.append)
             plan = new_plan(parse_behavior(HEAD + dedent(publishing("left/jog", "{}")), file="t.yaml"), load_states())
@@ -416,7 +416,7 @@ def test_a_recording_is_replayed_without_the_bus(tmp_path: Path) -> None:
         texts = {"test.yaml": msgspec.json.encode(behavior.document)}
         options = RecordingOptions(path=path, documents=RecordedDocuments(behavior="test.yaml", texts=texts))
         async with SkillBus(new_clock()) as bus, RunRecording.open(options, inline=True) as recording:
-            bench = Bench(bus)
+            bench = DeviceBus(bus)
             for at_s, key in ((0.5, "a"), (1.0, "s")):
                 asyncio.get_running_loop().call_later(at_s, bench.key, key)
             run = Run(new_plan(behavior, load_states()), run="r", bus=bus, journal=MemoryRunJournal(run_id="r"))

@@ -3,12 +3,12 @@ import { queryOptions } from '@tanstack/react-query'
 import { addressOf } from '../document/path'
 import { post } from './client'
 import { queryKeys } from './queryKeys'
-import type { ConditionBody, ConditionCheck } from './types'
+import type { Breakpoint, ConditionCheck } from './types'
 
-export function conditionQuery(behavior: string, body: ConditionBody) {
+export function conditionQuery(behavior: string, point: Breakpoint) {
   return queryOptions({
-    queryKey: queryKeys.condition(behavior, body),
-    queryFn: () => post<ConditionCheck>(`/breakpoints/${addressOf(behavior)}/condition`, body),
+    queryKey: queryKeys.condition(behavior, point),
+    queryFn: () => post<ConditionCheck>(`/breakpoints/${addressOf(behavior)}/condition`, point),
     enabled: behavior !== '',
   })
 }

@@ -1,6 +1,6 @@
 /** The names under which the page keeps what the server has answered; a key is below the one that it begins with. */
 import type { PastQuery, Subject } from './timeline'
-import type { ConditionBody, DemonstrationBody, Watch } from './types'
+import type { Breakpoint, DemonstrationBody, Watch } from './types'
 import type { TaughtReference } from './teaching'
 
 export const queryKeys = {
@@ -13,7 +13,7 @@ export const queryKeys = {
   names: (text: string) => ['names', text] as const,
   catalogue: ['catalogue'],
   usages: (kind: string, name: string) => ['usages', kind, name] as const,
-  condition: (behavior: string, body: ConditionBody) => ['condition', behavior, body] as const,
+  condition: (behavior: string, point: Breakpoint) => ['condition', behavior, point] as const,
 
   pastRuns: ['past runs'],
   foundRuns: (query: PastQuery) => [...queryKeys.pastRuns, query] as const,

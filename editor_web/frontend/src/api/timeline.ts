@@ -1,5 +1,4 @@
 /** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
-import type { Watch } from './types'
 import type { Dict } from '../document/dict'
 import { queryOptions } from '@tanstack/react-query'
 import { nextMoment } from '../document/timelineMoment'
@@ -9,7 +8,17 @@ import { call, wordsOf } from './client'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
 import { queryKeys } from './queryKeys'
-import type { MeasuredMarkers, OpenRunBody, PastRunState, PastRunsBody, RecordingFile, RunFailure, PastUserdata, Timeline } from './types'
+import type {
+  MeasuredMarkers,
+  OpenRunBody,
+  PastRunState,
+  PastRunsBody,
+  RecordingFile,
+  RunFailure,
+  PastUserdata,
+  Timeline,
+  Watch,
+} from './types'
 import { pageStore } from './pageStore'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */

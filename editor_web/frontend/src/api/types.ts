@@ -485,13 +485,6 @@ export interface ConcurrencyCondition {
   readonly preempt: readonly string[]
 }
 
-/** The condition of a breakpoint at the node `path`, to be checked; an empty one only asks for the names. */
-export interface ConditionBody {
-  readonly path: string
-  readonly condition?: string
-  readonly when?: "after" | "before"
-}
-
 /** What is wrong with a condition; empty if nothing is. `names` are the keys and parameters that it may use. */
 export interface ConditionCheck {
   readonly problem: string

@@ -166,6 +166,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
     else act(node.path)
   }
 
+  const breakpointForm = (path: string) => <Breakpoints path={path} isOff={commands.obstacle('breakpoint')} />
   const card = node && <NodeCard node={node} behavior={behavior.id} commands={commands} />
   const graph = behavior.graph ? (
     <Graph
@@ -174,7 +175,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
       onSelect={choose}
       shown={shown}
       behavior={behavior.id}
-      breakpointForm={(path) => <Breakpoints path={path} isOff={commands.obstacle('breakpoint')} />}
+      breakpointForm={breakpointForm}
       breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
     />
   ) : (

@@ -69,14 +69,14 @@ function graphOf(branching: Branching, endOf: (name: string) => string | undefin
   const children = flow.order.map((name) => {
     const id = endOf(name) ?? ''
     const { width, height } = sizes.get(name) ?? { width: 0, height: 0 }
-    const leaving = drawn.filter(({ source }) => source === id)
+    const outgoing = drawn.filter(({ source }) => source === id)
     // The first state opens the flow.
     const first: Record<string, string> = name === machine.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
     if (direction === 'DOWN') return { id, width, height, layoutOptions: first }
-    const step = Math.min(BETWEEN_PORTS, (axis - 6) / Math.max(1, leaving.length - 1))
+    const step = Math.min(BETWEEN_PORTS, (axis - 6) / Math.max(1, outgoing.length - 1))
     const ports = [
       port(`${id}>`, 0, axis, 'WEST'),
-      ...leaving.map((each, index) => port(`${each.id}>`, width, axis + index * step, 'EAST')),
+      ...outgoing.map((each, index) => port(`${each.id}>`, width, axis + index * step, 'EAST')),
     ]
     return { id, width, height, ports, layoutOptions: { 'elk.portConstraints': 'FIXED_POS', ...first } }
   })

@@ -154,13 +154,17 @@ export function conflictOf(id: CommandId, chord: Chord, own: OwnKeys): CommandRo
 /** The keys with others for one command, taken from whoever has them; with undefined those that it has at first. */
 export function withKeys(own: OwnKeys, id: CommandId, chords: readonly Chord[] | undefined): OwnKeys {
   const kept = Object.entries(own).filter(([other]) => other !== id)
-  let next: OwnKeys = Object.fromEntries(chords ? [...kept, [id, chords]] : kept)
-  for (const chord of chordsOf(id, next)) {
-    for (let other = conflictOf(id, chord, next); other; other = conflictOf(id, chord, next)) {
-      next = { ...next, [other.id]: chordsOf(other.id, next).filter((each) => !isSameChord(each, chord)) }
+  const next = new Map<string, readonly Chord[]>(chords ? [...kept, [id, chords]] : kept)
+  const asKeys = (): OwnKeys => Object.fromEntries(next)
+  for (const chord of chordsOf(id, asKeys())) {
+    for (let other = conflictOf(id, chord, asKeys()); other; other = conflictOf(id, chord, asKeys())) {
+      next.set(
+        other.id,
+        chordsOf(other.id, asKeys()).filter((each) => !isSameChord(each, chord)),
+      )
     }
   }
-  return next
+  return asKeys()
 }
 
 const BROWSER: readonly Chord[] = keys('Ctrl+t', 'Ctrl+n', 'Ctrl+w', 'Ctrl+Shift+t', 'Ctrl+Shift+n', 'Ctrl+Shift+w', 'Alt+F4', 'F11')

@@ -15,8 +15,11 @@ const MARGIN = 28
 /** Where a node is in the whole drawing. */
 export function placeOf(path: string, { boxes }: Pick<Layout, 'boxes'>): Box | undefined {
   const own = boxes.get(path)
-  const around = pathsTo(path).slice(0, -1)
-  return own && around.reduce((at, each) => ({ ...at, x: at.x + (boxes.get(each)?.x ?? 0), y: at.y + (boxes.get(each)?.y ?? 0) }), own)
+  const around = pathsTo(path)
+    .slice(0, -1)
+    .map((each) => boxes.get(each))
+  const along = (side: 'x' | 'y') => around.reduce((sum, each) => sum + (each?.[side] ?? 0), 0)
+  return own && { ...own, x: own.x + along('x'), y: own.y + along('y') }
 }
 
 /** The view in which all of these are seen and can be read; undefined where they are already. */

@@ -7,7 +7,7 @@ export function initialsOf(name: string): string {
   const letters = name
     .trim()
     .split(/\s+/)
-    .map((word) => [...word][0] ?? '')
+    .map((word) => String.fromCodePoint(word.codePointAt(0) ?? 32).trim())
   return letters.slice(0, 2).join('').toUpperCase()
 }
 

@@ -21,6 +21,8 @@ test('the arm is the one that the state moves', () => {
   expect(armOf({ robot: '${arm}' }, PARAMETERS)).toBe('left')
   expect(armOf({ robot: '${side}', speed: 1 }, PARAMETERS)).toBe('')
   expect(armOf({}, PARAMETERS)).toBe('')
+  expect(armOf({ part: 'plate', gripper: 'left' }, PARAMETERS, ['left', 'right'])).toBe('left')
+  expect(armOf({ part: 'plate', gripper: 'left' }, PARAMETERS)).toBe('')
 })
 
 test('a place is told in degrees and millimetres', () => {

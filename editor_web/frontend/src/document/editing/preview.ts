@@ -17,8 +17,8 @@ export const PLACED: Dict<string> = {
   cart_dmp: 'Motion, tool',
 }
 
-// The names that states give their arm; that of a tool is the arm's.
-const ARM_KEYS = ['robot', 'arm', 'gripper', 'hand', 'magnet']
+// The names that states give their arm.
+const ARM_KEYS = ['robot', 'arm']
 const REFERENCE = /^\$\{\s*([A-Za-z_]\w*)\s*\}$/
 
 /** The name of an entry in the value of a parameter: the value itself, or beside what else is said of it. */
@@ -37,10 +37,13 @@ export function byDefault(text: string, parameters: Dict<Mapping>): string | und
   return fallback !== undefined && !isTemplate(fallback) ? fallback : undefined
 }
 
-/** The arm that a state moves, by default; empty where nothing says which. */
-export function armOf(given: Mapping, parameters: Dict<Mapping>): string {
-  const arm = ARM_KEYS.map((key) => lookup(given, key)).find((value): value is string => typeof value === 'string')
-  return arm === undefined ? '' : (byDefault(arm, parameters) ?? '')
+/** The arm that a state moves, by default, or whose tool it moves, where the robots are known; empty where nothing says which. */
+export function armOf(given: Mapping, parameters: Dict<Mapping>, robots: readonly string[] = []): string {
+  const isText = (value: unknown): value is string => typeof value === 'string'
+  const arm = ARM_KEYS.map((key) => lookup(given, key)).find(isText)
+  if (arm !== undefined) return byDefault(arm, parameters) ?? ''
+  const named = Object.values(given).filter(isText)
+  return named.map((each) => byDefault(each, parameters) ?? '').find((each) => robots.includes(each)) ?? ''
 }
 
 /** Where the arm would be: of a motion how long it takes, how far the tool goes, and its end. */

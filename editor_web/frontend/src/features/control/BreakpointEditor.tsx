@@ -61,7 +61,7 @@ function Details({ point, isOff }: { point: CompleteBreakpoint; isOff: boolean }
   const behavior = useSavedBreakpoints((s) => s.behavior)
   const [asked] = useDebouncedValue(typed.trim(), DELAY_MS)
   const { value: check } = useLastAnswer({
-    ...conditionQuery(behavior, { path: point.path, condition: asked, when: point.when }),
+    ...conditionQuery(behavior, { path: point.path, if: asked, when: point.when }),
     enabled: !isOff,
   })
 

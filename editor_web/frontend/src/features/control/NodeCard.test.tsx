@@ -4,7 +4,7 @@ import { beforeEach, expect, it } from 'vitest'
 import { control, graphNode, live, node, run, server, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
 import { loadSavedBreakpoints } from '../../api/breakpoints'
-import type { Breakpoint, BreakpointsBody, ConditionBody, ConditionCheck } from '../../api/types'
+import type { Breakpoint, BreakpointsBody, ConditionCheck } from '../../api/types'
 import { Holds } from './Holds'
 import { NodeCard } from './NodeCard'
 import { RefusalLine } from './RefusalLine'
@@ -32,7 +32,7 @@ function keeping(points: readonly Breakpoint[] = []): void {
   server()
     .on(`GET /breakpoints/${SHIFT}`, { breakpoints: points })
     .on(`PUT /breakpoints/${SHIFT}`, ({ body }: { body: BreakpointsBody }) => body)
-    .on(`POST /breakpoints/${SHIFT}/condition`, ({ body }: { body: ConditionBody }) => checked(body.condition ?? ''))
+    .on(`POST /breakpoints/${SHIFT}/condition`, ({ body }: { body: Breakpoint }) => checked(body.if ?? ''))
 }
 
 /** What the engine says of a condition. */

@@ -20,12 +20,12 @@ const SCOPES: Record<string, ScopeView> = {
 }
 
 /** The data of a run, as the server tells of it. */
-function told(scopes = SCOPES, problem = '', watches: readonly WatchValue[] = []) {
+function told(scopes = SCOPES, problem = '', watched: readonly WatchValue[] = []) {
   live({ run: 'r1', runs: [RUN] })
   const user = show(<Data run={RUN} behavior={SHIFT} onShow={chosen} />)
   const socket = server().socket('/data')
   socket.accept()
-  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes, watches, problem })
+  socket.tell({ k: 'userdata', run: 'r1', first: true, scopes, watches: watched, problem })
   return { user, socket }
 }
 

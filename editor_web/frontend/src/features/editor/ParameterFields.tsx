@@ -110,7 +110,9 @@ function ParameterRow({ node, field, around }: { node: EditNode; field: EditFiel
         onSet={set}
         onPoint={setPointed}
       />
-      {isMeasured && <MeasuredNow field={field} value={value} arm={armOf(node.parameters, around.parameters)} />}
+      {isMeasured && (
+        <MeasuredNow field={field} value={value} arm={armOf(node.parameters, around.parameters, lookup(around.names, 'robot'))} />
+      )}
       {field.kind === 'entry' && <FieldPreview node={node} field={field} value={value} entries={around.entries} pointed={pointed} />}
       <Text size="xs" mt={2} c={problem ? 'var(--failed)' : 'dimmed'} id={hintId}>
         {problem ?? field.description}

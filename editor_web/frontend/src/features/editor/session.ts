@@ -57,7 +57,7 @@ export function reveal(path: string): void {
 export async function save(): Promise<boolean> {
   const met = await inTurn(write)
   if (typeof met === 'boolean') return met
-  if (met.merge && met.merge.conflicts.length === 0) return takeMerged(met)
+  if (met.merge?.conflicts.length === 0) return takeMerged(met)
   setEditor({ conflict: met, sides: {}, isComparing: met.merge === null })
   return false
 }

@@ -23,10 +23,10 @@ export function useSurroundings(node: EditNode, isFocused: boolean): Surrounding
   const catalogue = useEditor((s) => s.catalogue)
   const own = useEditor((s) => s.names)
   const root = useEditor(rootOf)
-  const parameters = useEditor((s) => draftOf(s).document?.parameters) as Dict<Dict<unknown>> | undefined
+  const parameters = useEditor<Dict<Dict<unknown>> | undefined>((s) => draftOf(s).document?.parameters)
   const names = own ?? catalogue?.names ?? NO_NAMES
   const isOpenCell = own === undefined || isSame(own, catalogue?.names ?? NO_NAMES)
-  const open = useOpenCell(armOf(node.parameters, parameters ?? NO_PARAMETERS), isFocused && isOpenCell)
+  const open = useOpenCell(armOf(node.parameters, parameters ?? NO_PARAMETERS, lookup(names, 'robot')), isFocused && isOpenCell)
   const added = useMemo(() => (root && catalogue ? addedNames(root, catalogue) : []), [root, catalogue])
   return {
     names,

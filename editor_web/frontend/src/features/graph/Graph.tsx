@@ -27,7 +27,7 @@ import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './el
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
 import { ContainerNode, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useFolding, type Folding } from './useFolding'
-import { useFollowedView, useFollowing, type Following } from './useFollowing'
+import { useFollowView, useFollowing, type Following } from './useFollowing'
 import { useLayout, type LaidOut } from './useLayout'
 
 const NODE_TYPES = { leaf: withLowDetail(LeafNode), container: withLowDetail(ContainerNode), outcome: withLowDetail(OutcomeNodeShell) }
@@ -133,7 +133,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, following, behavior, 
   const { fitView } = useReactFlow()
   const isStill = useReducedMotion() ?? false
   const showAll = useCallback(() => void fitView(fitOptions()), [fitView])
-  const onMoved = useFollowedView(laidOut, pane, following, showAll)
+  const onMoved = useFollowView(laidOut, pane, following, showAll)
   const drawn = useMemo(() => canvasNodes(laidOut), [laidOut])
   const edges = useMemo(() => canvasEdges(laidOut), [laidOut])
   const nodes = useMemo<CanvasNode[]>(

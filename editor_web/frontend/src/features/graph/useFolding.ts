@@ -18,8 +18,8 @@ export interface Folding {
 
 const NONE: Folded = new Set()
 
-/** What is around `shown`, a node that was asked for, is unfolded, and what is around the paths that are `followed`. */
-export function useFolding(root: GraphNode, shown: { readonly path: string } | undefined, followed: string): Folding {
+/** What is around `shown`, a node that was asked for, is unfolded, and what is around the `targets` to follow. */
+export function useFolding(root: GraphNode, shown: { readonly path: string } | undefined, targets: string): Folding {
   const [byHand, setByHand] = useState(NONE)
   const [hidesInactive, setHidesInactive] = useState(false)
   // In one string, so that it changes only when a container becomes active or is left.
@@ -42,9 +42,9 @@ export function useFolding(root: GraphNode, shown: { readonly path: string } | u
   }
 
   const [open, setOpen] = useState('')
-  if (followed !== open) {
-    setOpen(followed)
-    const around = followed.split('\n').reduce<Folded>((left, path) => unfoldedTo(path, left), byHand)
+  if (targets !== open) {
+    setOpen(targets)
+    const around = targets.split('\n').reduce<Folded>((left, path) => unfoldedTo(path, left), byHand)
     if (around.size !== byHand.size) setByHand(around)
   }
 

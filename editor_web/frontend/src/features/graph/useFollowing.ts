@@ -25,7 +25,7 @@ export interface Following {
 export function useFollowing(root: GraphNode): Following {
   const run = useLive((s) => s.run)
   const [isOn, setOn] = useState(true)
-  const [followed, setFollowed] = useState(run)
+  const [target, setTarget] = useState(run)
   const leaves = useMemo(
     () =>
       flatten(root)
@@ -36,8 +36,8 @@ export function useFollowing(root: GraphNode): Following {
   const active = useLive((s) => leaves.filter((path) => lookup(s.nodes, path)?.status === 'active').join('\n'))
   const waiting = useHolds((control) => control?.waiting.map((each) => each.path).join('\n') ?? '')
   // What one has looked at before a run says nothing about that run.
-  if (run !== followed) {
-    setFollowed(run)
+  if (run !== target) {
+    setTarget(run)
     setOn(true)
   }
   return {
@@ -49,7 +49,7 @@ export function useFollowing(root: GraphNode): Following {
 }
 
 /** Move the view: to all of it at first, then to what is followed. Returns what is to be told when somebody moves it. */
-export function useFollowedView(laidOut: LaidOut, pane: Size, { isOn, targets, pause }: Following, showAll: () => void): () => void {
+export function useFollowView(laidOut: LaidOut, pane: Size, { isOn, targets, pause }: Following, showAll: () => void): () => void {
   const { getViewport, setViewport } = useReactFlow()
   const isStill = useReducedMotion() ?? false
   const isFitted = useRef(false)

@@ -51,8 +51,8 @@ function sections(): Record<string, string[]> {
   const lists = region.getAllByRole('list')
   const titles = region.getAllByRole('heading', { level: 4 })
   // Without a good run there is no list of what differs from it, and what was measured is a table.
-  const others = ['Against the last good run', 'Expected against measured']
-  const told = titles.filter((title) => !others.includes(title.textContent ?? ''))
+  const others = new Set(['Against the last good run', 'Expected against measured'])
+  const told = titles.filter((title) => !others.has(title.textContent ?? ''))
   return Object.fromEntries(
     told.map((title, at) => [
       title.textContent ?? '',

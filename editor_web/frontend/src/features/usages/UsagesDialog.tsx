@@ -41,7 +41,7 @@ export function UsagesDialog({ asked, onOpen }: UsagesDialogProps) {
             aria-label="What is looked for"
             data={[...KINDS]}
             value={used.kind}
-            onChange={(kind) => setUsed({ kind: kind as UsedKind, name: '' })}
+            onChange={(kind) => setUsed({ kind, name: '' })}
           />
           <Autocomplete
             size="xs"

@@ -122,7 +122,7 @@ function JointRow({ name, lower, upper, value, onChange }: JointRowProps) {
 /** The configuration that stands in the document; undefined where it is none. */
 function numbersOf(value: unknown): readonly number[] | undefined {
   const isPlain = Array.isArray(value) && value.length > 0 && value.every((each) => typeof each === 'number')
-  return isPlain ? (value as number[]) : undefined
+  return isPlain ? value : undefined
 }
 
 function jointFault(joints: readonly number[] | undefined, info: ArmInfo | undefined, arm: string): string | undefined {

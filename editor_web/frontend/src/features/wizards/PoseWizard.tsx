@@ -20,7 +20,6 @@ import {
   turnOf,
   vectorFrom,
   type PlacedPose,
-  type Quaternion,
   type Vector,
 } from '../../document/poses'
 import { degrees, rollPitchYaw } from '../../document/teaching'
@@ -227,5 +226,5 @@ function poseOf(value: unknown): PlacedPose | undefined {
 
 function written({ xyz, xyzw }: PlacedPose, frame: string, form: PoseRequest['form']): Dict<unknown> {
   if (form === 'rpy') return { xyz, rpy: roundedTo(rollPitchYaw(xyzw)) }
-  return { xyz, xyzw: roundedTo(normalised(xyzw) as Quaternion, TURN_DIGITS), ...(frame === WORLD ? {} : { frame }) }
+  return { xyz, xyzw: roundedTo(normalised(xyzw), TURN_DIGITS), ...(frame === WORLD ? {} : { frame }) }
 }
