@@ -59,7 +59,6 @@ def test_every_field_has_a_type() -> None:
         "readonly value: Dict<unknown>",
         "readonly value: unknown",
         "readonly value?: Dict<unknown> | null",
-        "readonly value?: Dict<unknown> | null",
         "readonly value?: unknown",
         "readonly values: Dict<unknown>",
         "readonly values?: readonly unknown[] | null",

@@ -108,9 +108,9 @@ class _Merging:
         for key in dict.fromkeys((*theirs, *mine, *base)):
             here = f"{field}.{key}" if field else key
             self._entry(
-                cast("object", base.get(key, _ABSENT)),
-                cast("object", mine.get(key, _ABSENT)),
-                cast("object", theirs.get(key, _ABSENT)),
+                base.get(key, _ABSENT),
+                mine.get(key, _ABSENT),
+                theirs.get(key, _ABSENT),
                 path,
                 here,
                 lambda value, key=key: _put(theirs, key, value, mine),
@@ -142,7 +142,7 @@ class _Merging:
                 cast("list[object]", base), cast("list[object]", mine), cast("list[object]", theirs), path, field, put
             )
         else:
-            self._decide(base, mine, theirs, path, field, put)
+            self._decide(cast("object", base), cast("object", mine), cast("object", theirs), path, field, put)
 
     def _lists(
         self,

@@ -42,6 +42,6 @@ function withKept(before: Dict<NodeLive>, state: Dict<NodeLive>): Dict<NodeLive>
 
 function isSame(one: NodeLive, other: NodeLive): boolean {
   return (Object.keys(other) as (keyof NodeLive)[]).every((key) =>
-    key === 'plan' ? JSON.stringify(one.plan) === JSON.stringify(other.plan) : one[key] === other[key],
+    typeof other[key] === 'object' ? JSON.stringify(one[key]) === JSON.stringify(other[key]) : one[key] === other[key],
   )
 }

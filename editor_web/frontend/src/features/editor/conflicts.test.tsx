@@ -3,7 +3,7 @@ import { screen, waitFor } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { ConflictBody, DocumentAnalysis, NodeConflict } from '../../api/types'
+import type { ConflictBody, DocumentAnalysis, NodeConflict, SaveBody } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { draftFrom } from './apply'
 import { ConflictPanel } from './ConflictPanel'
@@ -45,22 +45,28 @@ beforeEach(() => {
 })
 
 it('saves both changes by itself where they are of different fields', async () => {
-  server().on(SAVE, new Refusal(409, { ...met([]) }))
-  const saving = save()
-  await waitFor(() => expect(server().bodies(SAVE)).toHaveLength(1))
-  server().on(SAVE, { hash: 'h-merged', saved_at: 1 })
-  expect(await saving).toBe(true)
+  server().on(SAVE, ({ body }: { body: SaveBody }) =>
+    body.base_hash === 'h-base' ? new Refusal(409, { ...met([]) }) : { hash: 'h-merged', saved_at: 1 },
+  )
+  expect(await save()).toBe(true)
   expect(server().bodies(SAVE).at(-1)).toEqual({ text: 'merged', base_hash: 'h-theirs' })
   expect(editor().notice?.message).toBe('Saved with changes of the file: wait')
   expect(editor().conflict).toBeUndefined()
 })
 
+it('does not merge for ever with a file that always changes again', async () => {
+  server().on(SAVE, new Refusal(409, { ...met([]) }))
+  expect(await save()).toBe(false)
+  expect(server().bodies(SAVE)).toHaveLength(4)
+  expect(editor().notice?.message).toContain('the file has changed 4 times')
+})
+
 it('keeps the merged text unsaved where it has an error that neither had', async () => {
   server().on(SAVE, new Refusal(409, { ...met([]) }))
-  const saving = save()
-  await waitFor(() => expect(server().bodies(SAVE)).toHaveLength(1))
-  server().on(FINDINGS, [{ severity: 'error', code: 'unknown-target', message: 'no node', path: 'root/go', line: 1, column: 1, hint: '' }])
-  expect(await saving).toBe(false)
+  const wrong = [{ severity: 'error', code: 'unknown-target', message: 'no node', path: 'root/go', line: 1, column: 1, hint: '' }]
+  // The draft had none: the merged text has it.
+  server().on(DRAFT, { ...analysis('h-merged'), findings: wrong })
+  expect(await save()).toBe(false)
   expect(server().bodies(SAVE)).toHaveLength(1)
   expect(draftOf(editor()).text).toBe('merged')
   expect(editor().notice?.message).toContain('new errors')

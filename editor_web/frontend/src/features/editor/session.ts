@@ -53,11 +53,18 @@ export function reveal(path: string): void {
   if (!path.startsWith(`${scope}/`)) setEditor({ scope: parentPath(path) || ROOT })
 }
 
+/** So often in a row a save is merged with a file that has changed again. */
+const MOST_MERGES = 3
+
 /** Write the draft to disk; true when it is there. Where the file has changed meanwhile, both changes are merged by nodes. */
-export async function save(): Promise<boolean> {
+export async function save(merges = 0): Promise<boolean> {
   const met = await inTurn(write)
   if (typeof met === 'boolean') return met
-  if (met.merge?.conflicts.length === 0) return takeMerged(met)
+  if (met.merge?.conflicts.length === 0) {
+    if (merges < MOST_MERGES) return takeMerged(met, merges)
+    showEditorRefusal('Save', `the file has changed ${merges + 1} times meanwhile.`, 'Save again when nobody else writes it.')
+    return false
+  }
   setEditor({ conflict: met, sides: {}, isComparing: met.merge === null })
   return false
 }
@@ -81,7 +88,7 @@ async function write(): Promise<boolean | ConflictBody> {
 }
 
 /** Go on with the merged text and save it, unless the two changes make errors together that neither has alone. */
-async function takeMerged({ merge, theirs, theirs_hash: hash }: ConflictBody): Promise<boolean> {
+async function takeMerged({ merge, theirs, theirs_hash: hash }: ConflictBody, merges = 0): Promise<boolean> {
   if (!merge) return false
   await lookForFindings()
   const before = new Set(errorsNow())
@@ -97,7 +104,7 @@ async function takeMerged({ merge, theirs, theirs_hash: hash }: ConflictBody): P
     )
     return false
   }
-  const isSaved = await save()
+  const isSaved = await save(merges + 1)
   const names = merge.theirs_changed.map(nameOfPath).join(', ')
   if (isSaved && names) showEditorNotice(`Saved with changes of the file: ${names}`)
   return isSaved
