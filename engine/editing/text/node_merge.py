@@ -142,7 +142,7 @@ class _Merging:
                 cast("list[object]", base), cast("list[object]", mine), cast("list[object]", theirs), path, field, put
             )
         else:
-            self._decide(cast("object", base), cast("object", mine), cast("object", theirs), path, field, put)
+            self._decide(base, cast("object", mine), cast("object", theirs), path, field, put)
 
     def _lists(
         self,
