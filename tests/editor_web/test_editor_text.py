@@ -55,6 +55,8 @@ def test_only_the_edited_lines_of_a_file_change(browser: Browser, shop: Workshop
         page.get_by_label("New name of home_again").fill("go_home")
         page.keyboard.press("Enter")
         expect(card(page, "root/go_home")).to_be_visible()
+        # The focus brings it into view.
+        card(page, "root/preplace").focus()
         card(page, "root/preplace").click()
         page.get_by_label("failed leads to").select_option("home_empty")
         idle(page)

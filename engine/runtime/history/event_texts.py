@@ -22,6 +22,7 @@ from engine.event import (
     GoalSent,
     LoopBlocked,
     MessageLogged,
+    MessagePublished,
     MessageReceived,
     NodeAbandoned,
     NodeDiverted,
@@ -209,6 +210,8 @@ def _request_text(event: Event) -> EventText | None:
             if event.cause is not None:
                 return _say("answer.failed", event.path, event.cause, call=event.call)
             return _say("answer", event.path, call=event.call, result=_short(event.result))
+        case MessagePublished():
+            return _say("published", event.path, topic=event.topic, message=_short(event.message))
         case MessageReceived():
             return _say("received", event.path, topic=event.topic, message=_short(event.message))
         case FaultInjected():

@@ -1,5 +1,5 @@
 /** Who has the page open, who operates since when, and how one is called. */
-import { Avatar, Group, Popover, Stack, Text, TextInput, UnstyledButton } from '@mantine/core'
+import { Avatar, Group, Popover, Stack, Text, TextInput, UnstyledButton, VisuallyHidden } from '@mantine/core'
 import { IconHandStop } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import { rename, useOwnPresence } from '../../api/presence'
@@ -20,10 +20,11 @@ export function People() {
   return (
     <Popover position="bottom-end" shadow="md" width={300} withinPortal>
       <Popover.Target>
-        <UnstyledButton
-          aria-label={`${present.length} ${present.length === 1 ? 'page' : 'pages'} open${operating.map((each) => `, ${each.name} operates`).join('')}`}
-          data-present={present.length}
-        >
+        <UnstyledButton data-present={present.length}>
+          {/* Said before the initials, which are part of the name because they are seen. */}
+          <VisuallyHidden>
+            {present.length} {present.length === 1 ? 'page' : 'pages'} open{operating.map((each) => `, ${each.name} operates`).join('')}
+          </VisuallyHidden>
           <Group gap="2xs" wrap="nowrap">
             {operating[0] && (
               <Text span size="xs" fw={600} visibleFrom="md" data-operates={operating[0].operates}>

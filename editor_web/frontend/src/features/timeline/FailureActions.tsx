@@ -53,14 +53,14 @@ export function FailureActions(props: FailureActionsProps) {
   return (
     <Group gap="xs" role="group" aria-label="What can be done">
       {hasView && (
-        <Button {...LOOK} leftSection={<IconCube size={15} aria-hidden />} onClick={() => lookAt(placesOf(failure, Object.keys(robots)))}>
+        <Button {...LOOK} leftSection={<IconCube size={13} aria-hidden />} onClick={() => lookAt(placesOf(failure, Object.keys(robots)))}>
           Show place in 3D
         </Button>
       )}
       {mayOperate && hasView && (
         <Button
           {...LOOK}
-          leftSection={<IconRestore size={15} aria-hidden />}
+          leftSection={<IconRestore size={13} aria-hidden />}
           disabled={isBusy}
           title={isOff}
           onClick={() => attempt('Parts are back', api.resetParts)}
@@ -71,7 +71,7 @@ export function FailureActions(props: FailureActionsProps) {
       {mayOperate && onStarted && failure.entered_seq > 0 && (
         <Button
           {...LOOK}
-          leftSection={<IconRepeat size={15} aria-hidden />}
+          leftSection={<IconRepeat size={13} aria-hidden />}
           disabled={isBusy}
           title={isOff ?? `Start a new run at ${failure.path}, with the values it had there`}
           onClick={() => attempt('Started', retry)}
@@ -80,18 +80,18 @@ export function FailureActions(props: FailureActionsProps) {
         </Button>
       )}
       {onEdit && failure.path && (
-        <Button {...LOOK} leftSection={<IconPencil size={15} aria-hidden />} onClick={() => onEdit(failure.path)}>
+        <Button {...LOOK} leftSection={<IconPencil size={13} aria-hidden />} onClick={() => onEdit(failure.path)}>
           Open state
         </Button>
       )}
       {onParameters && (
-        <Button {...LOOK} leftSection={<IconAdjustments size={15} aria-hidden />} onClick={onParameters}>
+        <Button {...LOOK} leftSection={<IconAdjustments size={13} aria-hidden />} onClick={onParameters}>
           Change parameters
         </Button>
       )}
       <CopyButton value={report}>
         {({ copied, copy }) => (
-          <Button {...LOOK} leftSection={<IconClipboardCopy size={15} aria-hidden />} onClick={copy}>
+          <Button {...LOOK} leftSection={<IconClipboardCopy size={13} aria-hidden />} onClick={copy}>
             {copied ? 'Copied' : 'Copy report'}
           </Button>
         )}
@@ -103,4 +103,4 @@ export function FailureActions(props: FailureActionsProps) {
   )
 }
 
-const LOOK = { variant: 'default', size: 'compact-sm' } as const
+const LOOK = { variant: 'default', size: 'compact-xs' } as const
