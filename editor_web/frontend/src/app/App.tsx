@@ -2,7 +2,7 @@
 import { AppShell, Burger, Kbd, NavLink } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
 import { IconChartDots, IconCube, IconHistory, IconLayoutGrid, IconSearch } from '@tabler/icons-react'
-import { Suspense, useEffect, type ReactNode } from 'react'
+import { useEffect, type ReactNode } from 'react'
 import { behaviorQueries } from '../api/behaviorQueries'
 import { connect, useLive, watch } from '../api/live'
 import { useAnswer, useOutdated } from '../api/queryClient'
@@ -14,7 +14,7 @@ import { showPresence } from '../api/presence'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
 import { SIDE_ITEM, SideLink } from '../components/SideLink'
 import { ViewBoundary } from '../components/ViewBoundary'
@@ -169,31 +169,31 @@ export function App() {
       <AppShell.Aside>
         {isGuided && (
           <ViewBoundary name="Recovery guide">
-            <Suspense fallback={null}>
+            <WhileLoading value={null}>
               <StopGuide onOpen={open} />
-            </Suspense>
+            </WhileLoading>
           </ViewBoundary>
         )}
       </AppShell.Aside>
       {used && (
         <ViewBoundary name="Usages">
-          <Suspense fallback={null}>
+          <WhileLoading value={null}>
             <UsagesDialog asked={used} onOpen={(document, path) => open(editHref(document, path))} />
-          </Suspense>
+          </WhileLoading>
         </ViewBoundary>
       )}
       {hasKeySheet && (
         <ViewBoundary name="Keyboard">
-          <Suspense fallback={null}>
+          <WhileLoading value={null}>
             <KeySheet />
-          </Suspense>
+          </WhileLoading>
         </ViewBoundary>
       )}
       {isTouring && (
         <ViewBoundary name="Tour">
-          <Suspense fallback={null}>
+          <WhileLoading value={null}>
             <Tour page={route.page} id={behaviorId ?? ''} onEdit={(id) => open(editHref(id))} onBehavior={(id) => open(behaviorHref(id))} />
-          </Suspense>
+          </WhileLoading>
         </ViewBoundary>
       )}
     </AppShell>

@@ -1,7 +1,7 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
 import { Box, Button, Flex } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
-import { Suspense, useEffect, useMemo, useState } from 'react'
+import { useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
@@ -12,7 +12,7 @@ import { showPresence } from '../api/presence'
 import { runSubject } from '../api/timeline'
 import type { BehaviorView, RunView, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
@@ -334,9 +334,9 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
       <ChangeReport commands={commands} />
       {isStartAsked && (
         <ViewBoundary name="Start here">
-          <Suspense fallback={null}>
+          <WhileLoading value={null}>
             <StartHereDialog behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
-          </Suspense>
+          </WhileLoading>
         </ViewBoundary>
       )}
     </Flex>

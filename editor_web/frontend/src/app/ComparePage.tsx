@@ -1,7 +1,7 @@
 /** Two past runs compared: aligned visits, the first divergence, and what differs of one visit or of the whole. */
 import { ActionIcon, SimpleGrid, Stack, Tabs, Tooltip } from '@mantine/core'
 import { IconArrowsExchange } from '@tabler/icons-react'
-import { Suspense, useEffect, useState } from 'react'
+import { useEffect, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { comparisonQueries } from '../api/comparison'
 import { useAnswer } from '../api/queryClient'
@@ -11,7 +11,7 @@ import { PageHead } from '../components/PageHead'
 import { PageLink } from '../components/PageLink'
 import { Splitter } from '../components/Splitter'
 import { TabCount } from '../components/TabCount'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { dataOf, durationOf, indexAt, placeOf, type Side } from '../document/comparison'
 import { ComparedRun } from '../features/comparison/ComparedRun'
@@ -114,14 +114,14 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
         <Settings settings={found.settings} documents={found.documents} />
       </Tabs.Panel>
       <Tabs.Panel value="curves">
-        <Suspense fallback={null}>
+        <WhileLoading value={null}>
           <ComparedCurves {...aligned} />
-        </Suspense>
+        </WhileLoading>
       </Tabs.Panel>
       <Tabs.Panel value="cell">
-        <Suspense fallback={null}>
+        <WhileLoading value={null}>
           <ComparedCell {...aligned} />
-        </Suspense>
+        </WhileLoading>
       </Tabs.Panel>
     </Tabs>
   )

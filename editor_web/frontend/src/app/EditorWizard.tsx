@@ -1,9 +1,9 @@
 /** The wizards of the editor: values that are taught on the cell, with its 3D view and the panel that jogs. */
-import { Suspense, useEffect, type ReactNode } from 'react'
+import { useEffect, type ReactNode } from 'react'
 import { showPreview } from '../api/preview'
 import { connectTeach } from '../api/teaching'
 import { askWizard, useWizard, type WizardRequest } from '../api/valueWizard'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { CellFrame } from '../features/cell/CellFrame'
 import { GridWizard } from '../features/wizards/GridWizard'
 import { JointWizard } from '../features/wizards/JointWizard'
@@ -41,8 +41,8 @@ function Asked({ asked, hasView, isNarrow }: EditorWizardProps & { readonly aske
 
 function jog(arm: string): ReactNode {
   return (
-    <Suspense fallback={<div role="status" aria-label="Loading" />}>
+    <WhileLoading value={<div role="status" aria-label="Loading" />}>
       <JogHere key={arm} arm={arm} />
-    </Suspense>
+    </WhileLoading>
   )
 }

@@ -1,11 +1,11 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
 import { ActionIcon, Box, Button, Group, Text, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
 import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
-import { Suspense, useState, type MouseEvent } from 'react'
+import { useState, type MouseEvent } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import type { RunView } from '../api/types'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { runStateOf, runWords } from '../document/runState'
@@ -119,9 +119,9 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
           )}
         </div>
       )}
-      <Suspense fallback={null}>
+      <WhileLoading value={null}>
         <People />
-      </Suspense>
+      </WhileLoading>
       {named && mayOperate && <StopButton run={named} />}
       <SchemeSwitch />
     </>

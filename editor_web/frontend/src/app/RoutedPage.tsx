@@ -1,9 +1,9 @@
 /** The page that an address means; each but the first is loaded when it is first opened. */
-import { Suspense } from 'react'
+
 import { useLive } from '../api/live'
 import { hasCellView } from '../api/session'
 import type { RunView, SessionBody } from '../api/types'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
 import { FromDemonstration } from '../features/demonstration/FromDemonstration'
@@ -100,10 +100,10 @@ function Edit({ id, session, isNarrow, onOpen }: RoutedPageProps & { readonly id
   const mayEdit = session?.role === 'operator'
   const preview = (
     <ViewBoundary name="Preview">
-      <Suspense fallback={null}>
+      <WhileLoading value={null}>
         <EditorPreview isNarrow={isNarrow} />
         <EditorWizard hasView={hasCellView(session)} isNarrow={isNarrow} />
-      </Suspense>
+      </WhileLoading>
     </ViewBoundary>
   )
   return (

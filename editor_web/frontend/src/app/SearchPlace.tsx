@@ -1,7 +1,7 @@
 /** The search, loaded once the page is there: what is typed right after its key is not lost, and the page begins without it. */
-import { Suspense, useEffect, useState, type ComponentType } from 'react'
+import { useEffect, useState, type ComponentType } from 'react'
 import { useSearch } from '../api/search'
-import { lazyView } from '../components/lazyView'
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import type { SearchBoxProps } from '../features/search/SearchBox'
 
@@ -25,9 +25,9 @@ export function SearchPlace(props: SearchBoxProps) {
   const Box = Loaded ?? LazySearchBox
   return (
     <ViewBoundary name="Search">
-      <Suspense fallback={null}>
+      <WhileLoading value={null}>
         <Box {...props} />
-      </Suspense>
+      </WhileLoading>
     </ViewBoundary>
   )
 }

@@ -1,6 +1,6 @@
 /** The recovery guide beside the page, with the jog panel in it. */
-import { Suspense } from 'react'
-import { lazyView } from '../components/lazyView'
+
+import { WhileLoading, lazyView } from '../components/lazyView'
 import { RecoveryGuide } from '../features/stop/RecoveryGuide'
 import { behaviorHref, runHref, TEACH_HREF } from './route'
 
@@ -10,9 +10,9 @@ export function StopGuide({ onOpen }: { readonly onOpen: (href: string) => void 
   return (
     <RecoveryGuide
       renderJog={(arm) => (
-        <Suspense fallback={<div role="status" aria-label="Loading" />}>
+        <WhileLoading value={<div role="status" aria-label="Loading" />}>
           <JogHere key={arm} arm={arm} />
-        </Suspense>
+        </WhileLoading>
       )}
       onTeach={() => onOpen(TEACH_HREF)}
       onRun={(id) => onOpen(runHref(id))}

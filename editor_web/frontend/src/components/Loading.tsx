@@ -1,6 +1,7 @@
 /** A view whose code may still be on its way, and may fail. */
+import { WhileLoading } from './lazyView'
 import { Text } from '@mantine/core'
-import { Suspense, useEffect, useState, type ReactNode } from 'react'
+import { useEffect, useState, type ReactNode } from 'react'
 import { ViewBoundary } from './ViewBoundary'
 
 /** What is there sooner says nothing: a word that comes and goes at once disturbs more than it tells. */
@@ -17,7 +18,7 @@ interface LoadingProps {
 export function Loading({ name, of = '', children }: LoadingProps) {
   return (
     <ViewBoundary name={name} of={of}>
-      <Suspense fallback={<Waiting />}>{children}</Suspense>
+      <WhileLoading value={<Waiting />}>{children}</WhileLoading>
     </ViewBoundary>
   )
 }

@@ -1,5 +1,8 @@
 /** Views whose code is loaded when they are first shown, and loaded again after a load that failed. */
-import { lazy, useState, type ComponentType } from 'react'
+import { createContext, useContext, useEffect, useState, type ComponentType, type ReactNode } from 'react'
+
+/** What stands in the place of a view while its code is loaded. */
+export const WhileLoading = createContext<ReactNode>(null)
 
 /** What gives each view that could not be loaded a new try. */
 const failed = new Set<() => void>()
@@ -10,21 +13,41 @@ export function forgetFailedLoads(): void {
   failed.clear()
 }
 
-/** Put it inside a `Suspense` and a `ViewBoundary`, which a failed load is thrown to. */
+/**
+ * Put it inside a `ViewBoundary`, which a failed load is thrown to. Nothing suspends: React 19.3 throws where a boundary
+ * that waits for code is taken away before the code has come.
+ */
 export function lazyView<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
-  const fresh = () =>
-    lazy(async () => {
-      try {
-        return { default: await load() }
-      } catch (error) {
-        // React keeps a failure for ever.
-        failed.add(() => (current = fresh()))
+  let loading: Promise<ComponentType<P>> | undefined
+  let loaded: ComponentType<P> | undefined
+
+  function start(): Promise<ComponentType<P>> {
+    loading ??= load().then(
+      (body) => (loaded = body),
+      (error: unknown) => {
+        failed.add(() => (loading = undefined))
         throw error
-      }
-    })
-  let current = fresh()
+      },
+    )
+    return loading
+  }
+
   return function LazyView(props: P) {
-    const [Body] = useState(() => current)
-    return <Body {...props} />
+    const [Body, setBody] = useState(() => loaded)
+    const [failure, setFailure] = useState<{ readonly error: unknown }>()
+    const waiting = useContext(WhileLoading)
+    useEffect(() => {
+      if (Body) return undefined
+      let isShown = true
+      start().then(
+        (body) => isShown && setBody(() => body),
+        (error: unknown) => isShown && setFailure({ error }),
+      )
+      return () => {
+        isShown = false
+      }
+    }, [Body])
+    if (failure) throw failure.error
+    return Body ? <Body {...props} /> : waiting
   }
 }

@@ -1,9 +1,9 @@
 /** A behavior that is written for another cell: why it cannot be started here, and the way to a copy that can. */
 import { Button } from '@mantine/core'
 import { IconArrowsExchange, IconInfoCircle } from '@tabler/icons-react'
-import { Suspense, useState } from 'react'
+import { useState } from 'react'
 import { Dialog } from '../../components/Dialog'
-import { lazyView } from '../../components/lazyView'
+import { WhileLoading, lazyView } from '../../components/lazyView'
 import { Notice } from '../../components/Notice'
 
 const Adaptation = lazyView(async () => (await import('./Adaptation')).Adaptation)
@@ -29,7 +29,7 @@ export function AdaptHere({ behavior, obstacle, mayEdit, onMade }: AdaptHereProp
         It cannot be started here: {obstacle}
       </Notice>
       <Dialog isOpen={isOpen} isWide title="Adapt to this cell" onClose={() => setOpen(false)}>
-        <Suspense fallback={<div role="status" aria-label="Loading" />}>
+        <WhileLoading value={<div role="status" aria-label="Loading" />}>
           <Adaptation
             behavior={behavior}
             onMade={(id) => {
@@ -37,7 +37,7 @@ export function AdaptHere({ behavior, obstacle, mayEdit, onMade }: AdaptHereProp
               onMade(id)
             }}
           />
-        </Suspense>
+        </WhileLoading>
       </Dialog>
     </>
   )

@@ -1,6 +1,6 @@
 /** The breakpoints of a node; the form of them is loaded when a node is looked at. */
-import { Suspense } from 'react'
-import { lazyView } from '../../components/lazyView'
+
+import { WhileLoading, lazyView } from '../../components/lazyView'
 import { ViewBoundary } from '../../components/ViewBoundary'
 import type { BreakpointEditorProps } from './BreakpointEditor'
 
@@ -9,9 +9,9 @@ const Editor = lazyView(async () => (await import('./BreakpointEditor')).Breakpo
 export function Breakpoints(props: BreakpointEditorProps) {
   return (
     <ViewBoundary name="Breakpoints" of={props.path}>
-      <Suspense fallback={null}>
+      <WhileLoading value={null}>
         <Editor {...props} />
-      </Suspense>
+      </WhileLoading>
     </ViewBoundary>
   )
 }

@@ -1,9 +1,9 @@
 /** A button that opens the dialog in which taught entries become a behavior. */
 import { Button } from '@mantine/core'
 import { IconHandFinger } from '@tabler/icons-react'
-import { Suspense, useState } from 'react'
+import { useState } from 'react'
 import { Dialog } from '../../components/Dialog'
-import { lazyView } from '../../components/lazyView'
+import { WhileLoading, lazyView } from '../../components/lazyView'
 
 const Demonstration = lazyView(async () => (await import('./Demonstration')).Demonstration)
 
@@ -23,14 +23,14 @@ export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) 
         From demonstration
       </Button>
       <Dialog isOpen={isOpen} title="Behavior from demonstration" onClose={() => setOpen(false)}>
-        <Suspense fallback={<div role="status" aria-label="Loading" />}>
+        <WhileLoading value={<div role="status" aria-label="Loading" />}>
           <Demonstration
             onMade={(id) => {
               setOpen(false)
               onMade(id)
             }}
           />
-        </Suspense>
+        </WhileLoading>
       </Dialog>
     </>
   )

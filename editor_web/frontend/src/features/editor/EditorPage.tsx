@@ -2,13 +2,13 @@
 import { lookup } from '../../document/dict'
 import { Flex, Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
-import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
+import { useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { offerCommands } from '../../api/search'
 import { useLive } from '../../api/live'
 import { askStartHere, type StartHere } from '../../api/startHere'
 import { Empty } from '../../components/Empty'
-import { lazyView } from '../../components/lazyView'
+import { WhileLoading, lazyView } from '../../components/lazyView'
 import { Loading } from '../../components/Loading'
 import { Splitter } from '../../components/Splitter'
 import { ViewBoundary } from '../../components/ViewBoundary'
@@ -227,7 +227,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       <Palettes />
       <ConflictDialog />
       <FileDialogs onGone={onGone} />
-      <Suspense>{hasVersions && <VersionsDialog />}</Suspense>
+      <WhileLoading value={null}>{hasVersions && <VersionsDialog />}</WhileLoading>
     </Flex>
   )
 }

@@ -32,7 +32,7 @@ it('names the open pages and who operates, and lets one say who one is', async (
   act(() => socket.tell({ k: 'presence', page: 2, present: [ADA, OWN] }))
   const user = show(<People />)
   expect(screen.getByText('Ada Lovelace operates')).toBeVisible()
-  await user.click(screen.getByRole('button', { name: '2 pages open, Ada Lovelace operates' }))
+  await user.click(screen.getByRole('button', { name: /2 pages open, Ada Lovelace operates/ }))
   const [ada, own] = within(await screen.findByRole('list', { name: 'Open pages' })).getAllByRole('listitem')
   expect(ada).toHaveTextContent('Edits palletise.yaml, grasp selected')
   expect(ada).toHaveTextContent('Operates shift.yaml since')
