@@ -21,6 +21,11 @@ ROOT = Path(__file__).parents[2]
 def test_the_catalogue_has_the_standard_states() -> None:
     """Behaviors name states by these words; a missing one breaks them."""
     assert sorted(STANDARD) == [
+        "bus.CallService",
+        "bus.CheckMessage",
+        "bus.Publish",
+        "bus.SendGoal",
+        "bus.WaitForMessage",
         "cell.ExpectPart",
         "cell.Reach",
         "cell.Withdraw",

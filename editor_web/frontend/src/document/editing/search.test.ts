@@ -2,7 +2,7 @@
 import { expect, it } from 'vitest'
 import { found } from './search'
 
-const STATES = ['gripper.Move', 'motion.MoveJoints', 'motion.MoveLinear', 'flow.Wait']
+const STATES = ['bus.WaitForMessage', 'gripper.Move', 'motion.MoveJoints', 'motion.MoveLinear', 'flow.Wait']
 
 it.each([
   ['mj', 'motion.MoveJoints'],

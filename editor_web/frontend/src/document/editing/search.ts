@@ -16,7 +16,9 @@ function fitOfWord(word: string, text: string): number {
   const lower = text.toLowerCase()
   const at = lower.indexOf(word)
   if (at === 0) return lower.length === word.length ? 20 : 14
-  if (at > 0) return isStart(text, at) ? 11 : 6
+  // `wait` is the whole last name of `flow.Wait`, and the beginning of others.
+  if (at > 0 && isStart(text, at)) return at + word.length === lower.length ? 13 : 11
+  if (at > 0) return 6
   return initialsOf(text).startsWith(word) ? 8 : -10_000
 }
 
