@@ -85,7 +85,7 @@ class TeachSite:
         self._parts: tuple[OpenCell, Session, Dashboard] | None = None
         (project / "behaviors" / "cells").mkdir(parents=True, exist_ok=True)
         (project / "behaviors" / "cells" / "taught.yaml").write_text(CELL, encoding="utf-8")
-        self._cell = cell or load_cell(project / "behaviors" / "cells" / "taught.yaml")
+        self._cell = cell
 
     @property
     def bus(self) -> SkillBus:
@@ -238,7 +238,8 @@ class TeachSite:
     async def _up(self) -> None:
         enter = self._open.enter_async_context
         journal = self._open.enter_context(Journal.open(self.project / ".flexcell"))
-        cell = OpenCell(self._cell, store_path=str(self.project / "cell.db"))
+        document = self._cell or load_cell(self.project / "behaviors" / "cells" / "taught.yaml")
+        cell = OpenCell(document, store_path=str(self.project / "cell.db"))
         await enter(cell)
         hand = HelpingHand(
             cell.bus,

@@ -74,12 +74,12 @@ def test_a_breakpoint_has_a_condition_and_a_count(browser: Browser, shop: Worksh
     with at_shift(browser, shop, quiet=False) as page:
         chosen = card(page, "root/rest")
         chosen.get_by_label("Pause before its entry").click()
-        chosen.get_by_label("Only if").fill("value >")
-        chosen.get_by_label("Only if").press("Enter")
+        chosen.get_by_role("combobox", name="Only if").fill("value >")
+        chosen.get_by_role("combobox", name="Only if").press("Enter")
         expect(page.get_by_role("alert")).to_contain_text("Breakpoint was refused")
-        chosen.get_by_label("Only if").fill("value == 1")
+        chosen.get_by_role("combobox", name="Only if").fill("value == 1")
         chosen.get_by_label("From time").fill("1")
-        chosen.get_by_label("Only if").press("Enter")
+        chosen.get_by_role("combobox", name="Only if").press("Enter")
         expect(page.get_by_role("alert")).to_have_count(0)
         # The one before may still be on its way.
         with page.expect_response(lambda answer: '"after"' in (answer.request.post_data or "")):
