@@ -22,9 +22,8 @@ def choose_in_menu(page: Page, words: str) -> None:
 
 def rename_state(page: Page, path: str, name: str) -> None:
     """Give a state another name by the keyboard."""
-    # By the keyboard, too, as the tools of a selected node may lie over its neighbour.
+    # The tools of a selected node may lie over its neighbour, so nothing is clicked.
     card(page, path).focus()
-    page.keyboard.press("Enter")
     page.keyboard.press("F2")
     page.keyboard.type(name)
     page.keyboard.press("Enter")
