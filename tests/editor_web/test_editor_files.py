@@ -22,8 +22,9 @@ def choose_in_menu(page: Page, words: str) -> None:
 
 def rename_state(page: Page, path: str, name: str) -> None:
     """Give a state another name by the keyboard."""
-    # The tools of a selected node may lie over its neighbour, so nothing is clicked.
-    card(page, path).focus()
+    # The tools of a selected node may lie over its neighbour.
+    page.keyboard.press("Escape")
+    card(page, path).click()
     page.keyboard.press("F2")
     page.keyboard.type(name)
     page.keyboard.press("Enter")
