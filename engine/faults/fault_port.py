@@ -19,7 +19,7 @@ from engine.faults.fault_rule import FaultRule
 from engine.faults.faulty_goal_sender import RepeatableGoal, send_faulty_goal
 from engine.faults.request_faults import RepeatableRequest, apply_request_fault
 from engine.runtime.record.recorder import Recorder
-from engine.runtime.record.skill_port import EntrySchedule, Goal, RunAwarePort, SkillPort
+from engine.runtime.record.skill_port import EntrySchedule, Goal, RunAwarePort, SkillPort, every_message
 from engine.skill import Action, Service
 
 R = TypeVar("R")
@@ -31,10 +31,6 @@ M = TypeVar("M")
 def kill_process() -> None:
     """End this process at once, as `kill -9` does."""
     os.kill(os.getpid(), signal.SIGKILL)
-
-
-def _any(_data: object) -> bool:
-    return True
 
 
 class FaultPort:
@@ -131,7 +127,9 @@ class FaultPort:
         async def read() -> object:
             return await self._inner.latest_data(topic, holder=holder)
 
-        return await self._read(topic, holder, read, partial(self._inner.next_data, topic, _any, holder=holder))
+        return await self._read(
+            topic, holder, read, partial(self._inner.next_data, topic, every_message, holder=holder)
+        )
 
     async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
         """Wait for the next message of a topic that meets the condition, unless a fault intervenes."""
@@ -161,7 +159,7 @@ class FaultPort:
         read: Callable[[], Awaitable[M]],
         read_next: Callable[[], Awaitable[M]],
         *,
-        fits: Callable[[object], bool] = _any,
+        fits: Callable[[object], bool] = every_message,
     ) -> M:
         again: M | None = self._again.pop((holder.branch, topic), None)
         if again is not None and fits(again):

@@ -138,7 +138,11 @@ class BusPort:
     async def latest_data(self, topic: str, *, holder: Holder) -> object:
         """Return the latest message of an existing topic as plain data, waiting for the first one."""
         message = self._bus.find_topic(topic).latest
-        return msgspec.to_builtins(message) if message is not None else await self.next_data(topic, _any, holder=holder)
+        return (
+            msgspec.to_builtins(message)
+            if message is not None
+            else await self.next_data(topic, every_message, holder=holder)
+        )
 
     async def next_data(self, topic: str, condition: Callable[[object], bool], *, holder: Holder) -> object:
         """Wait for the next message of an existing topic, as plain data, that meets the condition."""
@@ -162,5 +166,6 @@ class BusPort:
         return None
 
 
-def _any(_data: object) -> bool:
+def every_message(_data: object) -> bool:
+    """Return True: the condition that every message meets."""
     return True
