@@ -1,6 +1,7 @@
 /** What the live streams tell that makes answers of before out of date. */
 import type { QueryClient, QueryKey } from '@tanstack/react-query'
 import { lookup } from '../document/dict'
+import { isGone } from '../document/live'
 import { useLive } from './live'
 import type { LiveStore } from './liveStore'
 import { queryKeys } from './queryKeys'
@@ -19,7 +20,10 @@ export function invalidateByStreams(client: QueryClient): () => void {
     // Who did not answer while the connection was lost is asked again.
     if (now.connection === 'live' && before.connection !== 'live') void client.refetchQueries({ type: 'active', predicate: hasFailed })
     if (now.documents !== before.documents && changedDocuments(now, before).length > 0) {
-      outdate(queryKeys.behaviors, queryKeys.referrers, queryKeys.deleted, ...changedDocuments(now, before).map(queryKeys.document))
+      const changed = changedDocuments(now, before)
+      outdate(queryKeys.behaviors, queryKeys.deleted, ...changed.filter((id) => !isGone(now, id)).map(queryKeys.document))
+      // Of a document that is gone there is no answer.
+      void client.invalidateQueries({ queryKey: queryKeys.referrers, predicate: ({ queryKey }) => !isGone(now, String(queryKey[1])) })
     }
     if (now.runs !== before.runs) {
       if (now.runs.length !== before.runs.length) outdate(queryKeys.interrupted)

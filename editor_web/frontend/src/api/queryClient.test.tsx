@@ -5,6 +5,7 @@ import { live, run, server, show, snapshot } from '../../testing/page.tsx'
 import { Refusal } from '../../testing/server.ts'
 import { behaviorQueries } from './behaviorQueries'
 import { useAnswer } from './queryClient'
+import { relationQueries } from './relations'
 
 const BEHAVIORS = 'GET /behaviors'
 
@@ -15,6 +16,12 @@ function Told() {
 
 function Interrupted() {
   useAnswer(behaviorQueries.interrupted())
+  return null
+}
+
+function Referrers() {
+  useAnswer(relationQueries.referrers('behaviors/nap.yaml'))
+  useAnswer(relationQueries.referrers('behaviors/shift.yaml'))
   return null
 }
 
@@ -102,4 +109,15 @@ it('knows nothing of what another page was told', async () => {
   server().on(BEHAVIORS, () => new Promise(() => undefined))
   show(<Told />)
   expect(screen.getByRole('status')).toHaveTextContent('waits')
+})
+
+it('asks nothing of a document that is gone', async () => {
+  const [gone, kept] = ['behaviors/nap.yaml', 'behaviors/shift.yaml'].map((id) => `GET /documents/${id}/referrers`) as [string, string]
+  server().on(gone, []).on(kept, [])
+  const socket = live()
+  show(<Referrers />)
+  await waitFor(() => expect(times(gone) + times(kept)).toBe(2))
+  socket.tell({ k: 'documents', changed: { 'behaviors/nap.yaml': null } })
+  await waitFor(() => expect(times(kept)).toBe(2))
+  expect(times(gone)).toBe(1)
 })

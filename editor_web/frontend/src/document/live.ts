@@ -1,5 +1,5 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
-import type { Dict } from './dict'
+import { lookup, type Dict } from './dict'
 import type {
   CellStop,
   ControlView,
@@ -46,6 +46,11 @@ export interface LiveState {
   /** All open pages, and the number of this one among them. */
   readonly present: readonly Presence[]
   readonly page: number
+}
+
+/** Was the file of this document deleted while the page was open? */
+export function isGone({ documents }: Pick<LiveState, 'documents'>, id: string): boolean {
+  return lookup(documents, id) === null
 }
 
 export const EMPTY: LiveState = {

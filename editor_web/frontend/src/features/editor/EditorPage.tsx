@@ -1,4 +1,5 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
+import { isGone } from '../../document/live'
 import { lookup } from '../../document/dict'
 import { Flex, Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
@@ -71,7 +72,7 @@ export function EditorPage(props: EditorPageProps) {
     void openDocument(id, location.hash.slice(1))
   }, [id])
   useEffect(() => {
-    if (onDisk !== undefined && onDisk !== editor().base.hash) void lookAtDisk()
+    if (onDisk && onDisk !== editor().base.hash) void lookAtDisk()
   }, [onDisk])
   useEffect(() => refreshReferences(written), [written])
   useUnsavedGuard()
@@ -93,7 +94,7 @@ function useUnsavedGuard(): void {
       storeDraftNow()
       if (isDirty(editor())) event.preventDefault()
     }
-    const look = () => document.visibilityState === 'visible' && void lookAtDisk()
+    const look = () => document.visibilityState === 'visible' && !isGone(useLive.getState(), editor().id) && void lookAtDisk()
     addEventListener('beforeunload', warn)
     addEventListener('focus', look)
     document.addEventListener('visibilitychange', look)

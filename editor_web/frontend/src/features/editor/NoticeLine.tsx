@@ -2,9 +2,11 @@
 import { Box, CloseButton, Flex, Paper } from '@mantine/core'
 import { IconAlertTriangle, IconCheck, IconHistory } from '@tabler/icons-react'
 import { useEffect, type ReactNode } from 'react'
+import { useLive } from '../../api/live'
+import { isGone } from '../../document/live'
 import { LinkButton } from './FormParts'
 import classes from './frame.module.css'
-import { discard, save } from './session'
+import { discard, save, writeAgain } from './session'
 import { editor, setEditor, useEditor } from './store'
 
 const SHORT_MS = 2500
@@ -13,7 +15,9 @@ const TOAST = { zIndex: 20, transform: 'translateX(-50%)', pointerEvents: 'none'
 export function NoticeLine() {
   const notice = useEditor((s) => s.notice)
   const isRestored = useEditor((s) => s.isRestored)
-  const isOutdated = useEditor((s) => s.isOutdated)
+  const id = useEditor((s) => s.id)
+  const gone = useLive((s) => isGone(s, id))
+  const isOutdated = useEditor((s) => s.isOutdated && !gone)
   useEffect(() => {
     if (notice?.tone !== 'done') return
     const timer = setTimeout(() => editor().notice === notice && setEditor({ notice: undefined }), SHORT_MS)
@@ -21,6 +25,12 @@ export function NoticeLine() {
   }, [notice])
   return (
     <>
+      {gone && (
+        <Note tone="warning" icon={<IconAlertTriangle size={16} aria-hidden />}>
+          <span>The file has been deleted. What you see is kept in this browser.</span>
+          <LinkButton onPress={() => void writeAgain()}>Save it again</LinkButton>
+        </Note>
+      )}
       {isOutdated && (
         <Note tone="warning" icon={<IconAlertTriangle size={16} aria-hidden />}>
           <span>The file has changed on disk since you began. Saving merges both by nodes.</span>

@@ -7,6 +7,7 @@ import type { ConflictBody, DocumentAnalysis, NodeConflict, SaveBody } from '../
 import { newHistory } from '../../document/editing/history'
 import { draftFrom } from './apply'
 import { ConflictPanel } from './ConflictPanel'
+import { NoticeLine } from './NoticeLine'
 import { save } from './session'
 import { blank, draftOf, editor, setEditor, useEditor } from './store'
 
@@ -91,4 +92,16 @@ it('asks for a side of each field that both have changed, and saves with all els
     { text: 'mine', base_hash: 'h-base', sides: { 'root/go with.speed': 'theirs', 'root/old ': 'mine' } },
   ])
   await waitFor(() => expect(screen.queryByRole('region', { name: 'Conflicts' })).toBeNull())
+})
+
+it('tells that the file was deleted, and saves it again', async () => {
+  const socket = live()
+  const user = show(<NoticeLine />)
+  socket.tell({ k: 'documents', changed: { [ID]: null } })
+  expect(await screen.findByRole('alert')).toHaveTextContent('The file has been deleted.')
+  server().on(`POST /documents/${ID}/restore`, { text: 'base', hash: 'h-restored' }).on(SAVE, { hash: 'h-mine', saved_at: 1 })
+  await user.click(screen.getByRole('button', { name: 'Save it again' }))
+  await waitFor(() => expect(server().bodies(SAVE)).toEqual([{ text: 'mine', base_hash: 'h-restored' }]))
+  socket.tell({ k: 'documents', changed: { [ID]: 'h-mine' } })
+  await waitFor(() => expect(screen.queryByRole('alert')).toBeNull())
 })

@@ -1,6 +1,7 @@
 /** Opening and saving: the file, the kept draft, and what to do when both have changed. */
 import { wordsOf } from '../../api/client'
 import { conflictOf, documents } from '../../api/documents'
+import { relations } from '../../api/relations'
 import type { ConflictBody, NodeConflict } from '../../api/types'
 import { newHistory, pushed, replaced } from '../../document/editing/history'
 import { nodeOf, ROOT } from '../../document/editing/model'
@@ -159,6 +160,18 @@ export async function discard(): Promise<void> {
     deleteStoredDraft(id)
   } catch (error) {
     showEditorRefusal('Go back to the file', wordsOf(error))
+  }
+}
+
+/** Save the draft where the file was deleted meanwhile. */
+export async function writeAgain(): Promise<void> {
+  const { id } = editor()
+  try {
+    const { text, hash } = await relations.restore(id)
+    setEditor({ base: { text, hash } })
+    await save()
+  } catch (error) {
+    showEditorRefusal('Save', wordsOf(error), 'The draft is kept in this browser; copy it with Duplicate.')
   }
 }
 
