@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from playwright.sync_api import Page
+from scipy import ndimage
 
-# Of viser's transform controls: X, Y, Z; the ball in the middle is flexcell's.
-_COLOURS = ((255, 32, 96), (32, 223, 128), (32, 128, 255))
-_NEAR, _LEAST_PIXELS = 60, 12
-# Where an arrow is gripped, of its length, and how far it is pulled.
-_GRIP, _PULL = 0.75, 0.25
+# Of viser's transform controls as they appear: X, Y, Z; the ball in the middle is flexcell's.
+_COLOURS = ((253, 112, 158), (168, 232, 192), (128, 180, 235))
+_BALL = (118, 148, 240)
+_NEAR, _LEAST_PIXELS = 50, 12
+# Where an arrow is gripped, of its length: at its head, since arcs cross its shaft. And how far it is pulled.
+_GRIP, _PULL = 0.88, 0.25
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +39,15 @@ def find_arrows(page: Page) -> list[Arrow]:
     pixels = np.asarray(picture, dtype=np.int64)[
         top : int(box["y"] + box["height"]), left : int(box["x"] + box["width"])
     ]
-    found = [_points(pixels, colour) for colour in _COLOURS]
-    centre = np.median(np.vstack([points for points in found if len(points)]), axis=0)
+    near = [np.abs(pixels - np.array(colour)).sum(axis=2) < _NEAR for colour in (*_COLOURS, _BALL)]
+    # Other things in the cell have these colours too: the handle is what hangs together with its ball.
+    # The functions are typed in part only: Any contains them here.
+    places: NDArray[np.int64] = cast("Any", ndimage).label(
+        cast("Any", ndimage).binary_dilation(np.logical_or.reduce(near), iterations=3)
+    )[0]
+    handle = places == np.argmax(np.bincount(places[near[-1]]))
+    *found, ball = [_points(mask & handle) for mask in near]
+    centre = np.median(ball, axis=0)
     arrows: list[Arrow] = []
     for axis, points in enumerate(found):
         if len(points) < _LEAST_PIXELS:
@@ -54,7 +64,7 @@ def find_arrows(page: Page) -> list[Arrow]:
     return arrows
 
 
-def _points(pixels: NDArray[np.int64], colour: tuple[int, int, int]) -> NDArray[np.float64]:
-    """Return the pixels of a colour, as x and y."""
-    rows, columns = np.nonzero(np.abs(pixels - np.array(colour)).sum(axis=2) < _NEAR)
+def _points(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Return the pixels of a mask, as x and y."""
+    rows, columns = np.nonzero(mask)
     return np.stack((columns, rows), axis=1).astype(np.float64)

@@ -271,7 +271,7 @@ def firsts(trial: JogTrial, opened_s: float) -> Generator[tuple[str, Result]]:
 def row(name: str, results: Sequence[Result]) -> str:
     """One line of the table."""
     moved = [each for each in results if each.end == "moved"]
-    counts = [sum(each.end == end for each in results) for end in ("moved", "told", "lost", "wrong way")]
+    counts = [sum(each.end == end for each in results) for end in ("moved", "told", "lost", "wrong way", "hidden")]
     cells = [name, str(len(results)), *map(str, counts)]
     cells.append(_times([each.to_motion_s for each in moved]))
     cells.append(_times([each.to_rest_s for each in moved]))
@@ -284,8 +284,8 @@ def _times(times_s: Sequence[float]) -> str:
 
 def measure(trial: JogTrial, presses: int, drags: int, opened_s: float, inputs: Sequence[str]) -> None:
     """Print a row for each kind of input as soon as it is known."""
-    print("| input | presses | moved | told | lost | wrong way | to motion, median / most | to rest |")
-    print("|---|---|---|---|---|---|---|---|", flush=True)
+    print("| input | presses | moved | told | lost | wrong way | hidden | to motion, median / most | to rest |")
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
     for name, result in firsts(trial, opened_s):
         print(row(f"first after {name}", [result]), flush=True)
     by: dict[str, Callable[[Direction], Result]] = {
@@ -315,8 +315,10 @@ def measure(trial: JogTrial, presses: int, drags: int, opened_s: float, inputs: 
         trial.page.keyboard.press("Escape")
         results: list[Result] = []
         while len(results) < drags:
-            for arrow in find_arrows(trial.page):
-                results += [trial.by_handle(arrow, sign) for sign in (1, -1)]
+            axis, sign = len(results) // 2 % 3, 1 - 2 * (len(results) % 2)
+            # The handle goes with the arm.
+            arrow = next((each for each in find_arrows(trial.page) if each.axis == axis), None)
+            results.append(trial.by_handle(arrow, sign) if arrow is not None else Result(end="hidden"))
         print(row("handle", results), flush=True)
 
 

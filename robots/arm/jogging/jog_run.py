@@ -98,7 +98,7 @@ class JogRun:
 
     @property
     def dropped(self) -> int:
-        """How many presses were released before the arm could move along them."""
+        """How many presses have ended before the arm could move along them."""
         return self._presses.dropped
 
     def look(self) -> None:
@@ -158,6 +158,8 @@ class JogRun:
             velocity = press.velocity if press is not None else (0.0,) * self._width
             command = self._to_command(velocity, press.frame if press is not None else None)
             sent = command if self._guard is None else self._guard.bounded(command)
+            if press is not None and press.is_silent(now_s, self.watchdog_s):
+                sent = (0.0,) * len(sent)
             if press is None:
                 self._stream.send(sent, age_s=now_s - self._heard_s)
                 break

@@ -33,14 +33,22 @@ class Press:
     blocked: bool = False
 
     @property
-    def is_untold(self) -> bool:
-        """Whether nothing would tell that it has moved nothing."""
-        return self.moving_since_s is None and self.least_s > 0.0 and self.released_s is not None and not self.blocked
+    def is_unreported(self) -> bool:
+        """Whether nothing else reports that it has moved nothing."""
+        return self.moving_since_s is None and self.least_s > 0.0 and not self.blocked
+
+    def is_silent(self, now_s: float, watchdog_s: float) -> bool:
+        """Whether it may not begin to move: nobody says any more that it is held, nor when it was released."""
+        return self.released_s is None and now_s - self.heard_s >= watchdog_s
 
     def over_s(self, watchdog_s: float) -> float:
-        """Return when it ends if nothing else is heard."""
+        """Return when it ends if nothing else is heard.
+
+        One that has not moved waits in silence for as long as for the check of its path: on a starved machine its
+        release comes late, and must find it.
+        """
         if self.released_s is None:
-            return self.heard_s + watchdog_s
+            return self.heard_s + watchdog_s + (MOST_WAIT_S if self.is_unreported else 0.0)
         if self.moving_since_s is not None:
             return max(self.released_s, self.moving_since_s + self.least_s)
         if self.blocked or self.least_s == 0.0:
@@ -59,7 +67,7 @@ class PressQueue:
         self._watchdog_s = watchdog_s
         self._presses: deque[Press] = deque()
         self.dropped = 0
-        """How many were released before the arm could move, and were not blocked."""
+        """How many have ended before the arm could move, and were not blocked."""
 
     @property
     def current(self) -> Press | None:
@@ -85,7 +93,7 @@ class PressQueue:
     def advance(self, now_s: float) -> Press | None:
         """Leave the presses that are over, and return the one under way."""
         while self._presses and now_s >= self._presses[0].over_s(self._watchdog_s):
-            self.dropped += self._presses.popleft().is_untold
+            self.dropped += self._presses.popleft().is_unreported
         return self.current
 
     def due_s(self) -> float | None:

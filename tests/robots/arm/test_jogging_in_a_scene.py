@@ -33,6 +33,7 @@ from tests.robots.workspace.fake_cell import FakeCell, fake_cell
 from tests.tiers import nightly
 
 DOWN = (0.0, 0.0, -0.25, 0.0, 0.0, 0.0)
+STILL = (0.0,) * 7
 ROUND = (1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 MARGIN_M = JogCollisionOptions().margin_m
 
@@ -302,6 +303,30 @@ async def test_what_is_passed_on_anew_is_as_old_as_the_word_itself() -> None:
     assert len(ages_s) > 3
     assert ages_s == sorted(ages_s)
     assert ages_s[-1] > 0.1
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("is_released", [True, False])
+async def test_a_press_whose_path_is_checked_in_silence_moves_only_once_it_is_heard(is_released: bool) -> None:
+    """A busy machine: the check comes after the watchdog, and so does the release; without it nothing moves."""
+    async with fake_cell() as cell:
+        clock = cell.bus.clock
+        handle = cell.bus.send_goal(JogJoints(watchdog_s=0.12, idle_s=1.0), to="left")
+        dropped: list[int] = []
+        handle.on_feedback(lambda feedback: dropped.append(feedback.dropped))
+        await handle.accepted()
+        cell.planner.silent_s = 0.2
+        topic = cell.bus.topic("left/jog", JogCommand)
+        topic.publish(JogCommand(velocity=(0.1, *STILL[1:]), least_s=0.1))
+        await clock.sleep(0.25)
+        assert not any(map(any, sent(cell)))
+        cell.planner.silent_s = 0.02
+        if is_released:
+            topic.publish(JogCommand(velocity=STILL))
+        await clock.sleep(0.3)
+        assert any(map(any, sent(cell))) == is_released
+        await handle.result()
+    assert dropped[-1] == (not is_released)
 
 
 @pytest.mark.virtual

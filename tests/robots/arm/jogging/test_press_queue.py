@@ -77,12 +77,36 @@ def test_a_press_that_has_moved_the_arm_is_not_dropped() -> None:
 
 
 @pytest.mark.parametrize("least_s", [0.0, LEAST_S])
-def test_a_held_press_without_commands_ends_with_the_watchdog(least_s: float) -> None:
+def test_a_moving_press_without_commands_ends_with_the_watchdog(least_s: float) -> None:
     """Nobody has released it: the page has fallen silent, so its shortest time does not count."""
     queue = PressQueue(WATCHDOG_S)
     queue.take(JogCommand(velocity=UP, least_s=least_s), 0.0)
+    current = queue.advance(0.0)
+    assert current is not None
+    current.moving_since_s = 0.02
     queue.take(JogCommand(velocity=UP), 0.04)
     assert (at(queue, 0.04 + WATCHDOG_S - 0.01), at(queue, 0.04 + WATCHDOG_S)) == (UP, None)
+    assert queue.dropped == 0
+
+
+@pytest.mark.parametrize("later", [JogCommand(velocity=UP), JogCommand(velocity=STILL)], ids=["held", "released"])
+def test_a_press_that_has_not_moved_waits_in_silence_and_goes_on_when_it_is_heard(later: JogCommand) -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    silent = queue.advance(2 * WATCHDOG_S)
+    assert silent is not None
+    assert silent.is_silent(2 * WATCHDOG_S, WATCHDOG_S)
+    queue.take(later, 2 * WATCHDOG_S)
+    assert queue.current is silent
+    assert not silent.is_silent(2 * WATCHDOG_S, WATCHDOG_S)
+    assert queue.dropped == 0
+
+
+def test_a_press_of_which_nothing_is_heard_again_is_dropped_and_counted() -> None:
+    queue = PressQueue(WATCHDOG_S)
+    queue.take(press(UP), 0.0)
+    assert at(queue, WATCHDOG_S + MOST_WAIT_S) is None
+    assert queue.dropped == 1
 
 
 def test_a_plain_command_changes_the_held_press_and_ends_it_at_once() -> None:
