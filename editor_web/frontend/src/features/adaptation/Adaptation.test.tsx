@@ -61,7 +61,7 @@ it('shows what each name becomes, and what stays open before anything is written
   expect(await screen.findByRole('combobox', { name: 'robot left becomes' })).toHaveValue('arm (ur10, 6 joints, gripper)')
   expect(screen.getByRole('combobox', { name: 'joints left_home becomes' })).toHaveValue('')
   expect(screen.getByText('Stays open: 1 warning')).toBeVisible()
-  expect(screen.getByRole('list', { name: 'Stays open' })).toHaveTextContent('there is no joints entry `left_home`')
+  expect(screen.getByRole('list', { name: 'Stays open' })).toHaveTextContent('there is no joints entry left_home')
   expect(screen.getByText(/copies of them are made: behaviors\/pick_ur10.yaml/)).toBeVisible()
   expect(server().bodies(WRITE)).toEqual([])
 })

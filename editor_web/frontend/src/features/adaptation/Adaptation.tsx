@@ -6,6 +6,7 @@ import { adaptation, adaptationQuery, type NameChoices } from '../../api/adaptat
 import { problemOf, useLastAnswer } from '../../api/queryClient'
 import type { AdaptationBody, AdaptationPlan, FindingView, MappedName } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
+import { Words } from '../../components/Words'
 import { statusOf } from '../../document/runState'
 
 export interface AdaptationProps {
@@ -127,7 +128,7 @@ function Open({ plan }: { readonly plan: AdaptationPlan }) {
               <StatusIcon status={statusOf(finding.severity)} size={14} />
               <span>
                 <VisuallyHidden component="span">{finding.severity}: </VisuallyHidden>
-                {finding.message} <Code fz="xs">{finding.path}</Code>
+                <Words text={finding.message} /> <Code fz="xs">{finding.path}</Code>
               </span>
             </Group>
           </li>

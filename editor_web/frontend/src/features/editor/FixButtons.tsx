@@ -5,6 +5,7 @@ import type { Fix } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { problemsOf } from '../../document/editing/findings'
 import { statusOf } from '../../document/runState'
+import { Words } from '../../components/Words'
 import { makeFix } from './fixes'
 import { goTo } from './problems'
 import { PlainList } from './PlainList'
@@ -35,11 +36,6 @@ export function FixButtons({ fixes }: { fixes: readonly Fix[] }) {
       ))}
     </Group>
   )
-}
-
-/** Names in backticks are set as code. */
-export function Words({ text }: { text: string }) {
-  return text.split('`').map((part, index) => (index % 2 === 1 ? <code key={index}>{part}</code> : part))
 }
 
 /** Over the form of a node: a line each, which leads to the list of problems with its fixes. */

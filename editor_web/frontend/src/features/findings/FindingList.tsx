@@ -5,6 +5,7 @@ import type { FindingView } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
 import { TextButton } from '../../components/TextButton'
+import { Words } from '../../components/Words'
 import { statusOf } from '../../document/runState'
 import { nameOfPath } from '../../document/path'
 
@@ -31,10 +32,10 @@ export function FindingList({ document, findings, onSelect }: FindingListProps) 
             <StatusIcon status={statusOf(finding.severity)} size={16} />
             <div>
               <VisuallyHidden component="span">{finding.severity}: </VisuallyHidden>
-              {finding.message}
+              <Words text={finding.message} />
               {finding.hint && (
                 <Text size="sm" c="var(--quiet)">
-                  {finding.hint}
+                  <Words text={finding.hint} />
                 </Text>
               )}
               <Group gap="2xs" mt={3} fz="xs" ff="monospace" c="var(--quiet)">
