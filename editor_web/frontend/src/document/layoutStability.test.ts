@@ -19,7 +19,7 @@ function laidOut(root: GraphNode, whole = root): Promise<Layout> {
 function node(path: string, told: Partial<GraphNode> = {}): GraphNode {
   const name = path.split('/').at(-1) ?? path
   const none = { title: 'motion.MoveJoints', description: '', outcomes: ['done'], children: [], transitions: [], conditions: [] }
-  return { path, name, kind: 'state', ...none, initial: null, disabled: false, ...told }
+  return { path, name, kind: 'state', icon: 'path', ...none, initial: null, disabled: false, ...told }
 }
 
 function machine(path: string, children: readonly GraphNode[], more: readonly GraphTransition[] = []): GraphNode {

@@ -14,6 +14,7 @@ import {
 } from '@tabler/icons-react'
 import { memo } from 'react'
 import { useOthersAt } from '../../api/presence'
+import { KindIcon } from '../../components/KindIcon'
 import { initialsOf } from '../../document/presence'
 import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
@@ -21,7 +22,6 @@ import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
 import classes from './cards.module.css'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
-import { NodeIcon } from './NodeIcon'
 import { useConflicts, useMark, useTransitionFindings } from './marks'
 import { useEditor } from './store'
 
@@ -34,7 +34,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon color="var(--quiet)" kind={node.kind} />
+        <KindIcon icon={node.icon} />
         {node.role && (
           <span className={classes['chip']} data-role>
             {node.role}
@@ -67,7 +67,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon color="var(--quiet)" kind={node.kind} />
+        <KindIcon icon={node.icon} />
         <span className={`${classes['name']} cut-text`} data-name>
           {node.name}
         </span>
@@ -94,7 +94,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
   return (
     <div className={classes['card']} data-card="twig" data-kind={node.kind} {...looksOf(data, selected)}>
       <Handle type="target" id="above" position={Position.Top} className={classes['branch']} isConnectable={false} />
-      <NodeIcon color="var(--quiet)" kind={node.kind} size={15} />
+      <KindIcon icon={node.icon} size={15} />
       {node.role && (
         <span className={classes['chip']} data-role>
           {node.role}
