@@ -1,5 +1,5 @@
 /** The nodes of the editor's canvas: states, containers open and closed, parts of trees, outcomes, rules. */
-import { Avatar, VisuallyHidden } from '@mantine/core'
+import { VisuallyHidden } from '@mantine/core'
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import {
   IconAlertTriangleFilled,
@@ -13,9 +13,8 @@ import {
   IconShieldHalf,
 } from '@tabler/icons-react'
 import { memo } from 'react'
-import { useOthersAt } from '../../api/presence'
 import { KindIcon } from '../../components/KindIcon'
-import { initialsOf } from '../../document/presence'
+import { OthersHere } from '../../components/OthersHere'
 import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
@@ -160,26 +159,14 @@ function Extras({ data: { node } }: { data: CardData }) {
 }
 
 function MarkIcon(props: { path: string; inside: boolean }) {
+  const document = useEditor((s) => s.id)
   return (
     <>
-      <OthersHere path={props.path} />
+      <OthersHere document={document} path={props.path} isFolded={props.inside} />
       <ConflictIcon {...props} />
       <FindingIcon {...props} />
     </>
   )
-}
-
-/** Who else has the node selected. */
-function OthersHere({ path }: { path: string }) {
-  const others = useOthersAt(
-    useEditor((s) => s.id),
-    path,
-  )
-  return others.map(({ page, name }) => (
-    <Avatar key={page} size={18} color="initials" name={name} title={`${name} has it selected`} data-other={name}>
-      {initialsOf(name)}
-    </Avatar>
-  ))
 }
 
 /** Both the draft and the file have changed something of the node. */

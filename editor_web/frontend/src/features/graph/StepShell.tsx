@@ -9,6 +9,7 @@ import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
 import { KindIcon } from '../../components/KindIcon'
+import { OthersHere } from '../../components/OthersHere'
 import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
 import { transitionId } from '../../document/edgeId'
@@ -22,6 +23,8 @@ import type { OutcomeNode, StepNode } from './elements'
 import { HeldText, Marks } from './Marks'
 import classes from './step.module.css'
 
+/** The behavior that is drawn: those who have a node of it selected on other pages are shown at it. */
+export const DocumentContext = createContext('')
 /** Folds a container by its path, or unfolds it. */
 export const FoldContext = createContext<((path: string) => void) | undefined>(undefined)
 
@@ -45,6 +48,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
         <StatusIcon status={status} />
         <KindIcon icon={data.node.icon} />
         <Name name={data.node.name} />
+        <Others path={id} isFolded={data.isFolded} />
         {data.isFolded && <Fold path={id} name={data.node.name} isFolded />}
         {live && live.visits > 1 && (
           <span className={classes.quiet} style={{ marginLeft: 'auto' }}>
@@ -85,6 +89,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       <div className={classes.head}>
         <KindIcon icon={node.icon} />
         <Name name={node.name} />
+        <Others path={id} />
         <span className={`${classes.kind} cut-text`}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
         <span style={{ flex: 1 }} />
         <HeldText path={id} />
@@ -105,6 +110,11 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
     </div>
   )
 })
+
+/** Who else has the node selected, or one inside of a folded one. */
+function Others(at: { path: string; isFolded?: boolean }) {
+  return <OthersHere document={useContext(DocumentContext)} {...at} />
+}
 
 /** The name of a node, which may go on in a second line after an underscore. */
 function Name({ name }: { name: string }) {
