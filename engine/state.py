@@ -171,6 +171,8 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     outcomes: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[Mapping[str, Any]] = _NO_OUTPUT
     """Output key → type."""
+    icon: ClassVar[str] = ""
+    """The name of its icon on the page; without one, `ICON` of its module, then of its package."""
     success: ClassVar[tuple[str, ...]] = ()
     """Outcomes that mean SUCCESS to a behavior tree; the others mean FAILURE."""
     resume: ClassVar[str] = ""

@@ -46,7 +46,7 @@ def usages(services: ServicesOf, kind: UsedKind, name: Annotated[str, Query(min_
 
 def _of_states(states: tuple[StateView, ...]) -> Iterator[NameHit]:
     for state in states:
-        yield NameHit(kind="state", id=state.name, title=state.name, detail=state.summary)
+        yield NameHit(kind="state", id=state.name, title=state.name, detail=state.summary, icon=state.icon)
 
 
 def _of_entries(entries: tuple[EntryName, ...]) -> Iterator[NameHit]:

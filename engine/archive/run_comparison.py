@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from difflib import unified_diff
 from itertools import islice
 from typing import Literal
@@ -13,6 +13,7 @@ from engine.archive.archive import ArchivedRun
 from engine.archive.past_runs import PastRun
 from engine.archive.run_alignment import AlignedVisit, Divergence, Visit, align_runs
 from engine.event import Event, NodeEntered, RunStarted, UserdataAppended, UserdataWritten
+from engine.library.behavior_graph import graph_nodes
 from engine.replay import ValueChange, value_changes
 from engine.runtime.history.effective_events import effective_events
 
@@ -57,7 +58,7 @@ class RunComparison(msgspec.Struct, frozen=True, kw_only=True):
 
     `visits` are aligned, each container before what is inside; `divergence` is where the runs first differ, null where
     they do not. `settings` are parameters, inputs, seed and clock that differ. `left_out` and `data_left_out` count
-    what is not listed.
+    what is not listed. `icons` has the name of the icon of each visited node, as far as its graph is known.
     """
 
     left: PastRun
@@ -70,6 +71,7 @@ class RunComparison(msgspec.Struct, frozen=True, kw_only=True):
     documents: tuple[DocumentDifference, ...]
     data: tuple[DataDifference, ...]
     data_left_out: int
+    icons: dict[str, str]
 
 
 def compare_runs(left: ArchivedRun, right: ArchivedRun) -> RunComparison:
@@ -92,7 +94,15 @@ def compare_runs(left: ArchivedRun, right: ArchivedRun) -> RunComparison:
         documents=tuple(_documents(left.documents, right.documents)),
         data=listed[:MAX_DATA],
         data_left_out=len(data) - len(listed[:MAX_DATA]),
+        icons=_icons([left, right], {alignment.visits[index].path for index in kept}),
     )
+
+
+def _icons(runs: Iterable[ArchivedRun], paths: Collection[str]) -> dict[str, str]:
+    """Return the icons of nodes by path; of the later run where both have a node."""
+    graphs = (run.behavior.graph for run in runs)
+    nodes = (node for graph in graphs if graph is not None for node in graph_nodes(graph))
+    return {node.path: node.icon for node in nodes if node.path in paths}
 
 
 def is_different(aligned: AlignedVisit) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from engine.document.nodes.node_kinds import NODE_KINDS, KindField
+from engine.document.nodes.node_kinds import NODE_KINDS, KindField, node_icon
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.state_catalogue import Catalogue
 from engine.errors import StateError
@@ -25,10 +25,11 @@ class KeyView:
 
 @dataclass(frozen=True, kw_only=True)
 class StateView:
-    """A state; `group` is the part of its name before the last dot."""
+    """A state; `group` is the part of its name before the last dot, `icon` the name of its icon."""
 
     name: str
     group: str
+    icon: str
     summary: str
     doc: str
     outcomes: tuple[str, ...]
@@ -52,10 +53,11 @@ class ContainerView:
 
 @dataclass(frozen=True, kw_only=True)
 class BehaviorReferenceView:
-    """A behavior that another behavior may reference by its file."""
+    """A behavior that another behavior may reference by its file; `icon` is the name of its icon."""
 
     id: str
     name: str
+    icon: str
     description: str
     outcomes: tuple[str, ...] = ()
     success: tuple[str, ...] = ()
@@ -96,6 +98,7 @@ def behavior_reference_views(library: Library) -> tuple[BehaviorReferenceView, .
         BehaviorReferenceView(
             id=view.id,
             name=view.name,
+            icon=node_icon("behavior"),
             description=view.description,
             outcomes=view.graph.outcomes if view.graph is not None else (),
             success=view.success,
@@ -112,6 +115,7 @@ def _state(signature: StateSignature) -> StateView:
     return StateView(
         name=signature.name,
         group=signature.name.rpartition(".")[0],
+        icon=node_icon("state", signature.state),
         summary=signature.summary,
         doc=signature.doc,
         outcomes=signature.outcomes,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import msgspec
 
 from engine.document.behavior import Behavior
 from engine.document.nodes.concurrency_condition import deciding
+from engine.document.nodes.node_kinds import node_icon
 from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, NodeSpec
 from engine.runtime.plan import Catalogue
 
@@ -21,11 +22,12 @@ class GraphTransition(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
-    """One node with its descendants; `path` is the node path of events."""
+    """One node with its descendants; `path` is the node path of events, `icon` the name of its icon."""
 
     path: str
     name: str
     kind: str
+    icon: str
     title: str
     description: str
     outcomes: tuple[str, ...]
@@ -42,6 +44,13 @@ def new_graph(behavior: Behavior, catalogue: Catalogue, *, path: str = "root", n
     return _GraphBuilder(behavior, catalogue, path).node(name, behavior.root, "root")
 
 
+def graph_nodes(root: GraphNode) -> Iterator[GraphNode]:
+    """Yield a node and all inside it, containers before their children."""
+    yield root
+    for child in root.children:
+        yield from graph_nodes(child)
+
+
 class _GraphBuilder:
     def __init__(self, behavior: Behavior, catalogue: Catalogue, base: str) -> None:
         self._behavior = behavior
@@ -54,6 +63,7 @@ class _GraphBuilder:
             path=path,
             name=name,
             kind=node.kind,
+            icon=node_icon(node.kind, self._catalogue.get(node.state) if node.state is not None else None),
             title=node.state or node.behavior or node.behaviour or "",
             description=node.description,
             outcomes=self._outcomes(node),

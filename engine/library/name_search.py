@@ -8,6 +8,7 @@ from typing import Literal
 
 import msgspec
 
+from engine.document.nodes.node_kinds import node_icon
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 
@@ -19,6 +20,7 @@ class NameHit(msgspec.Struct, frozen=True, kw_only=True):
 
     `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind
     `path`; the id of a run; the address of an item of the cell, also for its topic `path`.
+    `icon` is the name of the icon of a node, a state class or a behavior.
     """
 
     kind: NameKind
@@ -26,12 +28,14 @@ class NameHit(msgspec.Struct, frozen=True, kw_only=True):
     title: str
     detail: str
     path: str = ""
+    icon: str = ""
 
 
 def behavior_names(behaviors: Iterable[BehaviorView]) -> Iterator[NameHit]:
     """Yield behaviors and their nodes; nodes of behaviors that others refer to come with their own behavior only."""
     for each in behaviors:
-        yield NameHit(kind="behavior", id=each.id, title=each.name, detail=f"{each.id} {each.description}".rstrip())
+        detail = f"{each.id} {each.description}".rstrip()
+        yield NameHit(kind="behavior", id=each.id, title=each.name, detail=detail, icon=node_icon("behavior"))
         if each.graph is not None:
             yield from _nodes(each, each.graph)
 
@@ -39,7 +43,7 @@ def behavior_names(behaviors: Iterable[BehaviorView]) -> Iterator[NameHit]:
 def _nodes(behavior: BehaviorView, parent: GraphNode) -> Iterator[NameHit]:
     for node in parent.children if parent.kind != "behavior" else ():
         detail = f"{node.title} · {behavior.name} · {node.path}"
-        yield NameHit(kind="node", id=behavior.id, path=node.path, title=node.name, detail=detail)
+        yield NameHit(kind="node", id=behavior.id, path=node.path, title=node.name, detail=detail, icon=node.icon)
         yield from _nodes(behavior, node)
 
 

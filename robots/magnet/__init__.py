@@ -2,3 +2,6 @@
 
 Only the table of tool kinds (`robots/tool_kinds.py`) names it. `magnet_kind.py` is where to begin.
 """
+
+ICON = "gripper"
+"""The name of the icon of its states."""

@@ -27,6 +27,7 @@ class PlanMotion(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.PlanMotion"
+    icon: ClassVar[str] = "plan"
     outcomes: ClassVar[tuple[str, ...]] = ("planned", "no_way", "failed")
     success: ClassVar[tuple[str, ...]] = ("planned",)
     outputs: ClassVar[Mapping[str, Any]] = {"plan": PlannedMotion, "reason": str}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from engine.document.nodes.node_kinds import node_icon
 from engine.errors import Cause
 from engine.library.behavior_graph import GraphNode, GraphTransition
 from engine.library.behavior_library import BehaviorView, FindingView, ParameterView
@@ -29,6 +30,7 @@ def node(
         path=path,
         name=path.rsplit("/", 1)[-1],
         kind=kind,
+        icon=node_icon(kind),
         title=title,
         description="",
         outcomes=outcomes,

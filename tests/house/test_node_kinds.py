@@ -10,10 +10,15 @@ from pathlib import Path
 import pytest
 
 from engine.document.nodes.node_kind import WRAPPERS
-from engine.document.nodes.node_kinds import NODE_KINDS, NodeKind
+from engine.document.nodes.node_kinds import LEAF_ICONS, NODE_KINDS, NodeKind, node_icon
+from engine.registry import load_states
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "editor_web" / "frontend" / "src"
+KIND_ICON = PAGE / "components" / "KindIcon.tsx"
+CONTAINERS = ("machine", "concurrency", "priority", "tree", "foreach")
+_KINDS = "|".join((*NODE_KINDS, *LEAF_ICONS))
+CHOSEN_BY_KIND = re.compile(rf"^\s*(?:{_KINDS}): .*\bIcon[A-Z]|'(?:{_KINDS})' \? <?Icon", re.MULTILINE)
 DECORATORS = {key: kind for key, kind in NODE_KINDS.items() if kind.is_decorator and key not in WRAPPERS}
 """Without `retry`, `timeout` and `guard`: they are keys of every node, planned, recorded and drawn as its policies."""
 ORDINARY_WORDS = {
@@ -64,9 +69,37 @@ def test_there_are_decorators_to_count() -> None:
     assert {"inverter", "one_shot", "cooldown", "remap"} <= DECORATORS.keys()
 
 
-def test_every_kind_has_an_icon_of_the_page() -> None:
-    """The catalogue gives the name of an icon, the page its drawing; none is left over."""
-    text = (PAGE / "features" / "editor" / "NodeIcon.tsx").read_text(encoding="utf-8")
-    table = text.partition("const ICONS")[2].partition("\n}")[0]
-    drawn = set(re.findall(r"^  (\w+): Icon", table, flags=re.MULTILINE))
-    assert drawn == {kind.icon for kind in NODE_KINDS.values()}
+def test_the_page_draws_every_icon_that_the_server_names() -> None:
+    """Those of kinds and of states, tools of the cell among them; none is left over."""
+    states = {node_icon("state", state) for state in load_states().values()}
+    assert set(drawn_icons()) == {*(kind.icon for kind in NODE_KINDS.values()), *LEAF_ICONS.values(), *states}
+
+
+def test_the_icons_of_nodes_differ() -> None:
+    components = list(drawn_icons().values())
+    assert len(set(components)) == len(components)
+
+
+@pytest.mark.parametrize("path", sorted(PAGE.rglob("*.tsx")), ids=lambda path: path.relative_to(PAGE).as_posix())
+def test_one_file_of_the_page_draws_nodes(path: Path) -> None:
+    """No other one chooses an icon by the kind of a node, or takes an icon that stands for a container."""
+    if path == KIND_ICON:
+        return
+    text = path.read_text(encoding="utf-8")
+    assert not CHOSEN_BY_KIND.search(text)
+    containers = {drawn_icons()[kind.icon] for key, kind in NODE_KINDS.items() if key in CONTAINERS}
+    assert not containers & set(re.findall(r"\w+", text))
+
+
+def test_an_icon_chosen_by_kind_is_seen() -> None:
+    assert CHOSEN_BY_KIND.search("const ICONS = {\n  machine: IconHome,\n}")
+    assert CHOSEN_BY_KIND.search("  state: { group: 'States', icon: <IconPuzzle /> },")
+    assert CHOSEN_BY_KIND.search("const Icon = kind === 'behavior' ? IconFileImport : IconBox")
+    assert not CHOSEN_BY_KIND.search("  run: { group: 'Runs', icon: <IconHistory /> },")
+
+
+@cache
+def drawn_icons() -> dict[str, str]:
+    """Return what the page draws: names of icons, each with its component."""
+    table = KIND_ICON.read_text(encoding="utf-8").partition("const ICONS")[2].partition("\n}")[0]
+    return dict(re.findall(r"^  (\w+): (Icon\w+)", table, flags=re.MULTILINE))

@@ -174,6 +174,7 @@ export function graphNode(path: string, told: Partial<GraphNode> = {}): GraphNod
     path,
     name: path.split('/').at(-1) ?? path,
     kind: 'state',
+    icon: 'state',
     title: 'test.Give',
     description: '',
     outcomes: ['a', 'b'],

@@ -1,10 +1,12 @@
-"""The table of node kinds: what editor, catalogue and page know of each kind that holds nodes, declared once.
+"""The table of node kinds: what editor, catalogue and page know of each kind of node, declared once.
 
 The model of a decorator declares it. Of the others only the texts are here: how each holds nodes and runs is its own.
+Kinds that hold no nodes have an icon only.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal, get_args, get_origin
@@ -25,6 +27,7 @@ from engine.document.nodes.node_spec import (
     ParallelSpec,
     WhileDoElseSpec,
 )
+from engine.state import State
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +115,7 @@ _KINDS = dict((
     _kind("tree", "Behavior tree", "Ticks sequences, selectors and decorators; ends with success or failure.",
           "tree", None, {"sequence": []}),
     _kind("foreach", "For each", "Executes its child once for each item, or a number of times.",
-          "loop", ForEachSpec, {"times": 1}),
+          "list", ForEachSpec, {"times": 1}),
     _kind("sequence", "Sequence", "Executes children in order until one fails.", "arrow", CompositeSpec, []),
     _kind("selector", "Selector", "Executes children in order until one succeeds.", "question", CompositeSpec, []),
     _kind("parallel", "Parallel",
@@ -122,8 +125,32 @@ _KINDS = dict((
           "Executes one child, then the second if it succeeded, else the third.", "fork", IfThenElseSpec, {}),
     _kind("while_do_else", "While, do, else",
           "Executes the second child while the first succeeds, the third while it fails.",
-          "fork", WhileDoElseSpec, {}),
+          "while", WhileDoElseSpec, {}),
     *_decorators(),
 ))  # fmt: skip
 NODE_KINDS: Mapping[str, NodeKind] = {key: _KINDS[key] for key in (*KINDS, *TREE_KINDS, *WRAPPERS) if key in _KINDS}
 """The kinds that hold nodes, by key: those for machines first, then the parts of trees."""
+LEAF_ICONS: Mapping[str, str] = {"state": "state", "behavior": "behavior", "behaviour": "state"}
+"""The names of the icons of the kinds that hold no nodes; that of a state without one of its own."""
+
+
+def node_icon(kind: str, state: type[State] | None = None) -> str:
+    """Return the name of the icon of a node.
+
+    Args:
+        kind: Its key in documents; an unknown one has the icon of a state.
+        state: The class that it runs, if it is a known state.
+    """
+    if state is not None:
+        return state.icon or _group_icon(state.__module__) or LEAF_ICONS["state"]
+    found = NODE_KINDS.get(kind)
+    return found.icon if found is not None else LEAF_ICONS.get(kind, LEAF_ICONS["state"])
+
+
+def _group_icon(module: str) -> str:
+    """Return the icon that a module names for its states, or its package; empty without."""
+    for name in (module, module.rpartition(".")[0]):
+        icon = getattr(sys.modules.get(name), "ICON", "")
+        if isinstance(icon, str) and icon:
+            return icon
+    return ""

@@ -214,7 +214,7 @@ class InverterSpec(DecoratorSpec, frozen=True, kw_only=True):
 class OneShotSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Runs its child to completion, or to success, once in a run of the tree, and keeps the status."""
 
-    icon = "box"
+    icon = "once"
     doc = "Executes its child once and keeps its final status."
 
     child: NodeSpec
@@ -235,7 +235,7 @@ class RepeatSpec(DecoratorSpec, frozen=True, kw_only=True):
 class CooldownSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Fails without ticking its child until `after` has passed since the child last ended."""
 
-    icon = "clock"
+    icon = "hourglass"
     doc = "Fails without ticking its child until a time has passed since the child ended."
     turns = MAY_FAIL
 
@@ -249,7 +249,7 @@ class RemapSpec(DecoratorSpec, frozen=True, kw_only=True):
     If a final status is mapped to `running`, the child is restarted with the period `every`.
     """
 
-    icon = "box"
+    icon = "exchange"
     doc = "Maps the status of its child to another status."
 
     child: NodeSpec
@@ -274,7 +274,7 @@ class StatusConditionSpec(DecoratorSpec, frozen=True, kw_only=True):
     A child that has ended with another status is restarted with the period `every`.
     """
 
-    icon = "box"
+    icon = "filter"
     doc = "Succeeds when its child has a given status, and is running until then."
 
     child: NodeSpec

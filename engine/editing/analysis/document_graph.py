@@ -12,6 +12,7 @@ import msgspec
 
 from engine.document.nodes.concurrency_condition import ConcurrencyCondition
 from engine.document.nodes.node_kind import MACHINES, SLOTS
+from engine.document.nodes.node_kinds import node_icon
 from engine.editing.project_context import NodeOutcomes, ProjectContext, rules, texts
 from engine.editing.text.draft import Draft
 from engine.editing.text.outline import NodeRef, Outline, Plain
@@ -246,6 +247,7 @@ class _Drawing:
             label=_text(self._draft.data.get("name")) or "root" if ref.parent is None else ref.name,
             role=ref.role,
             kind=ref.kind,
+            icon=node_icon(ref.kind, self._context.catalogue.get(_text(data.get("state")))),
             title=_text(data.get("state") or reference or data.get("behaviour")),
             description=_text(data.get("description")),
             outcomes=self._outcomes(ref, ends.outcomes),

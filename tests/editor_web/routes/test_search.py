@@ -25,6 +25,7 @@ async def test_behaviors_and_their_nodes_are_found_by_their_names(serve: Serve) 
         "path": "root/pick",
         "title": "pick",
         "detail": hits[0]["detail"],
+        "icon": "split",
     }
     assert none == []
 
@@ -51,7 +52,7 @@ async def test_states_are_found_and_where_behaviors_use_them(serve: Serve, tmp_p
         asked = {"kind": "state", "name": hit["id"]}
         usages = (await served.http.get("/api/v1/search/usages", params=asked)).json()
         wrong = await served.http.get("/api/v1/search/usages", params={"kind": "color", "name": "red"})
-    assert (hit["kind"], hit["id"]) == ("state", "flow.Wait")
+    assert (hit["kind"], hit["id"], hit["icon"]) == ("state", "flow.Wait", "flow")
     assert [(each["document"], each["path"], each["line"]) for each in usages["found"]] == [
         ("behaviors/wait.yaml", "root", 4)
     ]

@@ -9,7 +9,8 @@ from hypothesis import given
 
 from engine.archive import ArchivedRun, PastRun, RunComparison, compare_runs, run_comparison
 from engine.event import Event, NodeEntered, NodeExited, RunEnded, RunStarted, UserdataAppended, UserdataWritten
-from engine.library import BehaviorView
+from engine.library import BehaviorView, GraphNode
+from tests.editor_web.fake_behaviors import machine, state
 from tests.engine.archive.runs_of_events import VISITS, MadeVisit, run_of
 
 TEXT = "flexcell: 1\nname: pick\nspeed: 0.5\n"
@@ -31,9 +32,11 @@ def past_run(run: str = "r1", /, **fields: object) -> PastRun:
     return PastRun(id=run, **{**known, **fields})  # type: ignore[arg-type]
 
 
-def archived(events: list[Event], documents: Mapping[str, str] | None = None) -> ArchivedRun:
+def archived(
+    events: list[Event], documents: Mapping[str, str] | None = None, graph: GraphNode | None = None
+) -> ArchivedRun:
     """A run of these events."""
-    view = BehaviorView(id="pick.yaml", name="pick", description="")
+    view = BehaviorView(id="pick.yaml", name="pick", description="", graph=graph)
     return ArchivedRun(summary=past_run(), events=tuple(events), behavior=view, plan=None, documents=documents or {})  # type: ignore[arg-type]
 
 
@@ -105,6 +108,16 @@ def test_documents_that_differ_are_compared_line_by_line() -> None:
         "pick.yaml": ("@@ -1,3 +1,3 @@", " flexcell: 1", " name: pick", "-speed: 0.5", "+speed: 0.7"),
         "new.yaml": ("@@ -0,0 +1 @@", "+b"),
     }
+
+
+def test_visited_nodes_have_their_icons() -> None:
+    """As far as the graph of one of the runs is known; a node that no run has visited is not among them."""
+    run = run_of(MadeVisit("move"), MadeVisit("wait"))
+    graph = machine(
+        "root", (state("root/move", "x.A", "done"), state("root/rest", "x.A", "done")), "move.done>good", "good"
+    )
+    assert compare_runs(archived(run), archived(run)).icons == {}
+    assert compare_runs(archived(run, graph=graph), archived(run)).icons == {"root": "sitemap", "root/move": "state"}
 
 
 def test_of_many_visits_those_that_differ_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:

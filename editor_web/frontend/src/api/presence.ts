@@ -27,7 +27,14 @@ export function rename(name: string): void {
   useOwnPresence.setState({ name: name.trim() })
 }
 
-/** The other pages that have a node selected. */
-export function useOthersAt(document: string, node: string): readonly Presence[] {
-  return useLive(useShallow((s) => s.present.filter((each) => each.page !== s.page && each.document === document && each.node === node)))
+/** The other pages that have a node selected, or one inside where the node stands for what is inside. */
+export function useOthersAt(document: string, node: string, isFolded: boolean): readonly Presence[] {
+  return useLive(
+    useShallow((s) =>
+      s.present.filter(
+        (each) =>
+          each.page !== s.page && each.document === document && (each.node === node || (isFolded && each.node.startsWith(`${node}/`))),
+      ),
+    ),
+  )
 }

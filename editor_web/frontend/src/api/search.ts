@@ -10,6 +10,8 @@ export interface PageCommand {
   readonly title: string
   readonly group: string
   readonly detail?: string | undefined
+  /** The name of the icon of a node; a command without one has that of all commands. */
+  readonly icon?: string
   /** Its key, as it is written on keyboards. */
   readonly hint?: string | undefined
   /** Why it cannot be used now. */

@@ -169,10 +169,11 @@ export interface BehaviorChanged {
   readonly documents?: Dict<string>
 }
 
-/** A behavior that another behavior may reference by its file. */
+/** A behavior that another behavior may reference by its file; `icon` is the name of its icon. */
 export interface BehaviorReferenceView {
   readonly id: string
   readonly name: string
+  readonly icon: string
   readonly description: string
   readonly outcomes: readonly string[]
   readonly success: readonly string[]
@@ -673,6 +674,7 @@ export interface DocumentNode {
   readonly path: string
   readonly name: string
   readonly kind: string
+  readonly icon: string
   readonly title: string
   readonly description: string
   readonly outcomes: readonly string[]
@@ -1096,11 +1098,12 @@ export interface GraphDifference {
   readonly lines: Dict<readonly [number, number, number]>
 }
 
-/** One node with its descendants; `path` is the node path of events. */
+/** One node with its descendants; `path` is the node path of events, `icon` the name of its icon. */
 export interface GraphNode {
   readonly path: string
   readonly name: string
   readonly kind: string
+  readonly icon: string
   readonly title: string
   readonly description: string
   readonly outcomes: readonly string[]
@@ -1522,13 +1525,14 @@ export interface NameCandidate {
   readonly detail: string
 }
 
-/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. */
+/** Something that has a name. `id` is that of a behavior, also for its node at `path`; the name of a state class; the name of an entry, of kind `path`; the id of a run; the address of an item of the cell, also for its topic `path`. `icon` is the name of the icon of a node, a state class or a behavior. */
 export interface NameHit {
   readonly kind: "behavior" | "entry" | "item" | "node" | "run" | "state" | "topic"
   readonly id: string
   readonly title: string
   readonly detail: string
   readonly path: string
+  readonly icon: string
 }
 
 /** A document to create from a template: machine, sequence or concurrency. */
@@ -2122,7 +2126,7 @@ export interface RobotLive {
   readonly path: PathLive | null
 }
 
-/** Two runs beside one another. `visits` are aligned, each container before what is inside; `divergence` is where the runs first differ, null where they do not. `settings` are parameters, inputs, seed and clock that differ. `left_out` and `data_left_out` count what is not listed. */
+/** Two runs beside one another. `visits` are aligned, each container before what is inside; `divergence` is where the runs first differ, null where they do not. `settings` are parameters, inputs, seed and clock that differ. `left_out` and `data_left_out` count what is not listed. `icons` has the name of the icon of each visited node, as far as its graph is known. */
 export interface RunComparison {
   readonly left: PastRun
   readonly right: PastRun
@@ -2134,6 +2138,7 @@ export interface RunComparison {
   readonly documents: readonly DocumentDifference[]
   readonly data: readonly DataDifference[]
   readonly data_left_out: number
+  readonly icons: Dict<string>
 }
 
 /** The run ended; `status` is finished, stopped or errored. */
@@ -2525,10 +2530,11 @@ export interface StartResultBody {
   readonly run: string
 }
 
-/** A state; `group` is the part of its name before the last dot. */
+/** A state; `group` is the part of its name before the last dot, `icon` the name of its icon. */
 export interface StateView {
   readonly name: string
   readonly group: string
+  readonly icon: string
   readonly summary: string
   readonly doc: string
   readonly outcomes: readonly string[]

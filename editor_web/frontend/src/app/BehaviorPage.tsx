@@ -175,6 +175,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
       onSelect={choose}
       shown={shown}
       behavior={behavior.id}
+      document={behavior.id}
       breakpointForm={breakpointForm}
       breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
     />

@@ -60,6 +60,7 @@ const FOUND: RunComparison = {
   documents: [{ name: 'pick.yaml', lines: ['-speed: 0.5', '+speed: 0.7'] }],
   data: [{ index: 2, path: 'root/grasp', kind: 'wrote', at: 'force_n', left: '12.5', right: null }],
   data_left_out: 0,
+  icons: { root: 'sitemap', 'root/grasp': 'gripper' },
 }
 
 function Page() {
@@ -97,6 +98,7 @@ it('shows visits side by side, and begins at the first divergence', async () => 
       .map((cell) => cell.textContent),
   ).toEqual(['done', '1.00 s', 'not entered', '', ''])
   expect(row('root/grasp, visit 1')).toHaveAttribute('aria-selected', 'true')
+  expect(row('root/grasp, visit 1').querySelector('[data-icon]')).toHaveAttribute('data-icon', 'gripper')
   expect(screen.getByText('wrote force_n').closest('tr')).toHaveTextContent('wrote force_n12.5nothing')
   expect(location.hash).toBe('#root/grasp@1')
 })

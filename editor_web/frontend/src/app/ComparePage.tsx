@@ -87,7 +87,7 @@ function Compared({ left, right, isNarrow, onOpen, found }: ComparePageProps & {
     cursorS: cursorS === undefined ? undefined : Math.min(cursorS, durationS),
     onGo: setCursor,
   }
-  const table = <VisitTable visits={found.visits} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
+  const table = <VisitTable visits={found.visits} icons={found.icons} leftOut={found.left_out} selected={selected} onSelect={setSelected} />
   const details = (
     <Tabs defaultValue="visit" keepMounted={false}>
       <Tabs.List>

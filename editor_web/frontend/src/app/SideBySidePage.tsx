@@ -193,6 +193,7 @@ function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
               selected={selected}
               onSelect={setSelected}
               shown={shown}
+              document={run.behavior}
               of={name}
               breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
             />

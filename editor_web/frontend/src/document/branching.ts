@@ -1,6 +1,7 @@
 /** Machines that branch and come back are laid out by the layout engine, as one long row that is then broken into several. */
 import type { GraphNode } from '../api/types'
 import { edgeId, edgeOf, outcomeId } from './edgeId'
+import { COLUMNS, inColumns } from './columns'
 import type { ElkArrow, ElkShape, LayoutCall } from './elkGraph'
 import type { Flow } from './flow'
 import type { Size } from './geometry'
@@ -66,29 +67,30 @@ function graphOf(branching: Branching, endOf: (name: string) => string | undefin
     const [source, target] = [endOf(transition.source), endOf(transition.target)]
     return source && target ? [{ ...transition, source, target, id: edgeId({ ...transition, machine: machine.path }) }] : []
   })
-  const children = flow.order.map((name) => {
+  const children = flow.order.map((name): [string, ElkShape] => {
     const id = endOf(name) ?? ''
     const { width, height } = sizes.get(name) ?? { width: 0, height: 0 }
     const outgoing = drawn.filter(({ source }) => source === id)
-    // The first state opens the flow.
-    const first: Record<string, string> = name === machine.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
-    if (direction === 'DOWN') return { id, width, height, layoutOptions: first }
+    if (direction === 'DOWN') return [name, { id, width, height }]
     const step = Math.min(BETWEEN_PORTS, (axis - 6) / Math.max(1, outgoing.length - 1))
     const ports = [
       port(`${id}>`, 0, axis, 'WEST'),
       ...outgoing.map((each, index) => port(`${each.id}>`, width, axis + index * step, 'EAST')),
     ]
-    return { id, width, height, ports, layoutOptions: { 'elk.portConstraints': 'FIXED_POS', ...first } }
+    return [name, { id, width, height, ports, layoutOptions: { 'elk.portConstraints': 'FIXED_POS' } }]
   })
-  const ends = [...outcomes].map(([name, width]) => ({ id: outcomeId(machine.path, name), width, height: OUTCOME_HEIGHT }))
-  const inside = new Set(children.map(({ id }) => id))
+  const ends = [...outcomes].map(([name, width]): [string, ElkShape] => [
+    name,
+    { id: outcomeId(machine.path, name), width, height: OUTCOME_HEIGHT },
+  ])
+  const inside = new Set(children.map(([, { id }]) => id))
   const edges = drawn.map(({ id, source, target, outcome }): ElkArrow => ({
     id,
     sources: [direction === 'DOWN' ? source : `${id}>`],
     targets: [direction === 'RIGHT' && inside.has(target) ? `${target}>` : target],
     labels: [{ text: outcome, width: labelWidth(outcome), height: LABEL_HEIGHT }],
   }))
-  return { id: machine.path, children: [...children, ...ends], edges, layoutOptions: options(direction) }
+  return { id: machine.path, children: inColumns(flow, new Map([...children, ...ends])), edges, layoutOptions: options(direction) }
 }
 
 /** A place at the border of a node where arrows come, or where one goes. */
@@ -109,9 +111,7 @@ function options(direction: Direction): Record<string, string> {
     'elk.layered.spacing.nodeNodeBetweenLayers': '20',
     'elk.layered.spacing.edgeNodeBetweenLayers': '14',
     'elk.layered.spacing.edgeEdgeBetweenLayers': '12',
-    // What leads back in the order of the flow is a loop.
-    'elk.layered.cycleBreaking.strategy': 'MODEL_ORDER',
-    'elk.layered.considerModelOrder.strategy': 'PREFER_NODES',
+    ...COLUMNS,
     'elk.layered.nodePlacement.strategy': 'BRANDES_KOEPF',
     'elk.layered.nodePlacement.bk.fixedAlignment': 'LEFTUP',
     'elk.edgeLabels.inline': 'true',

@@ -34,7 +34,7 @@ const LABEL_OFFSET = 9
  * are more than one line.
  */
 export function chainOf(
-  { order }: Flow,
+  { order }: Pick<Flow, 'order'>,
   drawn: readonly GraphTransition[],
   outcomes: readonly string[],
 ): readonly GraphTransition[] | undefined {

@@ -42,6 +42,7 @@ const COMPARISON: RunComparison = {
   left_out: 0,
   data: [],
   data_left_out: 0,
+  icons: {},
   nodes: [node('root', 2, 3), node('root/look', 1, 1.05), node('root/grasp', 0.5, 1.5), node('root/new', 0, 1, 0)],
   settings: [
     { at: 'parameters.width_m', left: '0.02', right: '0.03' },

@@ -9,6 +9,7 @@ function graphNode(path: string, told: Partial<GraphNode> = {}): GraphNode {
     path,
     name: path.split('/').at(-1) ?? path,
     kind: 'state',
+    icon: 'state',
     title: 'test.Give',
     description: '',
     outcomes: ['a'],

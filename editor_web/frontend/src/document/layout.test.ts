@@ -14,6 +14,7 @@ function leaf(path: string): GraphNode {
     path,
     name,
     kind: 'state',
+    icon: 'state',
     title: 'motion.MoveJoints',
     description: '',
     outcomes: ['done', 'failed'],

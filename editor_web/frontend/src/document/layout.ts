@@ -44,6 +44,8 @@ const AXIS = LEAF_HEIGHT / 2
 const EXIT_LINE = 22
 /** States are as wide as one of these, so that a longer name seldom moves what is beside it. */
 const LEAF_WIDTHS = [160, 220, 280] as const
+/** The icon before the name, with what it stands apart. */
+const KIND_ICON = 23
 const HEADER = 38
 const PADDING = 14
 /** From the border of a machine to its first row. */
@@ -118,7 +120,7 @@ async function layOutInside(node: GraphNode, style: Style, call: LayoutCall): Pr
 }
 
 function leaf(node: GraphNode): Inner {
-  const preferred = Math.max(textWidth(node.name.length, 8), textWidth(node.title.length, 6.6)) + 64
+  const preferred = Math.max(textWidth(node.name.length, 8) + KIND_ICON, textWidth(node.title.length, 6.6)) + 64
   const width = widthFrom(LEAF_WIDTHS, preferred)
   return { width, height: LEAF_HEIGHT, boxes: new Map(), courses: [] }
 }

@@ -8,6 +8,7 @@ const graph = (path: string, children: readonly GraphNode[] = []): GraphNode => 
   path,
   name: path.split('/').pop() ?? '',
   kind: children.length > 0 ? 'machine' : 'state',
+  icon: 'state',
   title: '',
   description: '',
   outcomes: [],

@@ -1,5 +1,6 @@
 /** Machines that branch and come back are laid out by the layout engine, from port to port. */
 import { port } from '../branching'
+import { COLUMNS, inColumns } from '../columns'
 import { edgeId, outcomeId } from '../edgeId'
 import type { ElkShape, LayoutCall } from '../elkGraph'
 import type { Flow } from '../flow'
@@ -44,23 +45,22 @@ export async function byEngine(
 ): Promise<Content> {
   const inner = new Map(node.children.map((child, index) => [child.path, units[index]]))
   const byName = new Map(node.children.map((child) => [child.name, child]))
-  const inOrder = flow.order.flatMap((name) => byName.get(name) ?? [])
-  const children: ElkShape[] = inOrder.map((child) => {
+  const shapes = new Map<string, ElkShape>()
+  for (const child of flow.order.flatMap((name) => byName.get(name) ?? [])) {
     const { width, height } = inner.get(child.path) ?? empty()
     const outgoing = outgoingTransitions(node, child)
     const outs = outgoing.map((each, row) => port(`${child.path}>${each.outcome}`, width, portY(height, outgoing.length, row), 'EAST'))
-    const first: Record<string, string> = child.name === node.initial ? { 'elk.layered.layering.layerConstraint': 'FIRST' } : {}
-    return {
+    shapes.set(child.name, {
       id: child.path,
       width,
       height,
       ports: [port(`${child.path}>`, 0, entryY(height, outgoing.length), 'WEST'), ...outs],
-      layoutOptions: { ...FIXED, ...first },
-    }
-  })
+      layoutOptions: FIXED,
+    })
+  }
   for (const outcome of drawn) {
     const id = outcomeId(node.path, outcome)
-    children.push({
+    shapes.set(outcome, {
       id,
       width: pillWidth(outcome),
       height: PILL_HEIGHT,
@@ -82,7 +82,7 @@ export async function byEngine(
         ]
       : []
   })
-  const graph: ElkShape = { id: node.path, children, edges, layoutOptions: ENGINE }
+  const graph: ElkShape = { id: node.path, children: inColumns(flow, shapes), edges, layoutOptions: ENGINE }
   const answer = await call(graph)
   const rows = wrapped(
     {
@@ -112,9 +112,7 @@ const ENGINE: Record<string, string> = {
   'elk.layered.spacing.nodeNodeBetweenLayers': '56',
   'elk.layered.spacing.edgeNodeBetweenLayers': '16',
   'elk.layered.spacing.edgeEdgeBetweenLayers': '12',
-  // What leads back in the order of the flow is a loop.
-  'elk.layered.cycleBreaking.strategy': 'MODEL_ORDER',
-  'elk.layered.considerModelOrder.strategy': 'PREFER_NODES',
+  ...COLUMNS,
   'elk.layered.nodePlacement.strategy': 'BRANDES_KOEPF',
   'elk.layered.nodePlacement.bk.fixedAlignment': 'LEFTUP',
 }

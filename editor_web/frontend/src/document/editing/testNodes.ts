@@ -7,6 +7,7 @@ export function node(path: string, outcomes: readonly string[], more: Partial<Ed
     path,
     name: nameOfPath(path),
     kind: 'state',
+    icon: 'state',
     title: 'test.State',
     outcomes,
     children: [],

@@ -2,16 +2,20 @@
 import { Box, Button, Group, Switch, Table, Text, UnstyledButton } from '@mantine/core'
 import { useEffect, useRef, useState } from 'react'
 import type { AlignedVisit, Visit } from '../../api/types'
+import { KindIcon } from '../../components/KindIcon'
 import { Panel } from '../../components/Panel'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { differenceS, durationOf, endWords, isDifferent, signed } from '../../document/comparison'
+import { lookup, type Dict } from '../../document/dict'
 import { duration } from '../../document/time'
 import { depthOf, nameOfPath } from '../../document/path'
 import styles from '../../components/table.module.css'
 
 interface VisitTableProps {
   readonly visits: readonly AlignedVisit[]
+  /** The names of the icons of nodes, by path. */
+  readonly icons: Dict<string>
   readonly leftOut: number
   readonly selected: number | undefined
   readonly onSelect: (index: number) => void
@@ -19,7 +23,7 @@ interface VisitTableProps {
 
 const PAGE = 300
 
-export function VisitTable({ visits, leftOut, selected, onSelect }: VisitTableProps) {
+export function VisitTable({ visits, icons, leftOut, selected, onSelect }: VisitTableProps) {
   const [isShort, setShort] = useState(false)
   const [most, setMost] = useState(PAGE)
   const rows = visits.flatMap((visit, index) => (!isShort || index === selected || isDifferent(visit) ? [{ visit, index }] : []))
@@ -65,7 +69,13 @@ export function VisitTable({ visits, leftOut, selected, onSelect }: VisitTablePr
           </Table.Thead>
           <Table.Tbody>
             {rows.slice(0, reach).map(({ visit, index }) => (
-              <Row key={index} visit={visit} isSelected={index === selected} onSelect={() => onSelect(index)} />
+              <Row
+                key={index}
+                visit={visit}
+                icon={lookup(icons, visit.path)}
+                isSelected={index === selected}
+                onSelect={() => onSelect(index)}
+              />
             ))}
           </Table.Tbody>
         </Table>
@@ -81,10 +91,12 @@ export function VisitTable({ visits, leftOut, selected, onSelect }: VisitTablePr
 
 function Row({
   visit,
+  icon,
   isSelected,
   onSelect,
 }: {
   readonly visit: AlignedVisit
+  readonly icon: string | undefined
   readonly isSelected: boolean
   readonly onSelect: () => void
 }) {
@@ -101,7 +113,7 @@ function Row({
     <Table.Tr ref={row} data-different={isDifferent(visit) || undefined} aria-selected={isSelected}>
       <Table.Th scope="row" style={{ paddingInlineStart: `${0.6 + depth}em` }}>
         <UnstyledButton fz="inherit" aria-pressed={isSelected} aria-label={`${path}, visit ${number}`} onClick={onSelect}>
-          {name}
+          {icon !== undefined && <KindIcon icon={icon} size={13} />} {name}
           {number > 1 && (
             <Text span inherit c="dimmed">
               {' '}

@@ -1,5 +1,5 @@
 /** The nodes of the editor's canvas: states, containers open and closed, parts of trees, outcomes, rules. */
-import { Avatar, VisuallyHidden } from '@mantine/core'
+import { VisuallyHidden } from '@mantine/core'
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import {
   IconAlertTriangleFilled,
@@ -13,15 +13,14 @@ import {
   IconShieldHalf,
 } from '@tabler/icons-react'
 import { memo } from 'react'
-import { useOthersAt } from '../../api/presence'
-import { initialsOf } from '../../document/presence'
+import { KindIcon } from '../../components/KindIcon'
+import { OthersHere } from '../../components/OthersHere'
 import { disabledText } from '../../document/editing/disabling'
 import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
 import classes from './cards.module.css'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
-import { NodeIcon } from './NodeIcon'
 import { useConflicts, useMark, useTransitionFindings } from './marks'
 import { useEditor } from './store'
 
@@ -34,7 +33,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon color="var(--quiet)" kind={node.kind} />
+        <KindIcon icon={node.icon} />
         {node.role && (
           <span className={classes['chip']} data-role>
             {node.role}
@@ -67,7 +66,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
       <Entry data={data} />
       {data.isInitial && <InitialMark />}
       <div className={classes['head']} data-head>
-        <NodeIcon color="var(--quiet)" kind={node.kind} />
+        <KindIcon icon={node.icon} />
         <span className={`${classes['name']} cut-text`} data-name>
           {node.name}
         </span>
@@ -94,7 +93,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
   return (
     <div className={classes['card']} data-card="twig" data-kind={node.kind} {...looksOf(data, selected)}>
       <Handle type="target" id="above" position={Position.Top} className={classes['branch']} isConnectable={false} />
-      <NodeIcon color="var(--quiet)" kind={node.kind} size={15} />
+      <KindIcon icon={node.icon} size={15} />
       {node.role && (
         <span className={classes['chip']} data-role>
           {node.role}
@@ -160,26 +159,14 @@ function Extras({ data: { node } }: { data: CardData }) {
 }
 
 function MarkIcon(props: { path: string; inside: boolean }) {
+  const document = useEditor((s) => s.id)
   return (
     <>
-      <OthersHere path={props.path} />
+      <OthersHere document={document} path={props.path} isFolded={props.inside} />
       <ConflictIcon {...props} />
       <FindingIcon {...props} />
     </>
   )
-}
-
-/** Who else has the node selected. */
-function OthersHere({ path }: { path: string }) {
-  const others = useOthersAt(
-    useEditor((s) => s.id),
-    path,
-  )
-  return others.map(({ page, name }) => (
-    <Avatar key={page} size={18} color="initials" name={name} title={`${name} has it selected`} data-other={name}>
-      {initialsOf(name)}
-    </Avatar>
-  ))
 }
 
 /** Both the draft and the file have changed something of the node. */

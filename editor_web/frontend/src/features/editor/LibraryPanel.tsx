@@ -4,13 +4,14 @@ import { IconChevronDown, IconChevronRight, IconInfoCircle, IconMapPin, IconSear
 import { useMemo, useState, type ReactNode } from 'react'
 import type { CatalogueBody } from '../../api/types'
 import { findUsages } from '../../api/usages'
+import { KindIcon } from '../../components/KindIcon'
 import { Panel } from '../../components/Panel'
 import { TextButton } from '../../components/TextButton'
 import { PLACED } from '../../document/editing/preview'
 import { found } from '../../document/editing/search'
 import type { Used } from '../../document/editing/usedBy'
 import { add, type Addition } from './actions'
-import { entryAddition, itemIcon, itemsOf, type Item } from './additions'
+import { entryAddition, itemsOf, type Item } from './additions'
 import { placeForNew } from './paletteRequests'
 import { ADDITION } from './dragging'
 import { FormWords } from './FormParts'
@@ -73,6 +74,7 @@ function entryItems(catalogue: CatalogueBody): readonly Item[] {
         doc: `A named ${entry.kind}. Adds ${addition.runs ?? ''} that goes there.`,
         outcomes: [],
         kind: 'entry',
+        icon: '',
         onlyInTree: false,
         addition,
         entry,
@@ -135,7 +137,7 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           }}
           onClick={() => addHere(item.addition)}
         >
-          {item.kind === 'entry' ? <IconMapPin size={15} aria-hidden /> : itemIcon(item.kind, 15)}
+          {item.icon === '' ? <IconMapPin size={15} aria-hidden /> : <KindIcon icon={item.icon} size={15} />}
           <span className={rows['line']}>{short}</span>
         </UnstyledButton>
         {item.entry && item.entry.kind in PLACED && <LibraryPreview entry={item.entry} />}

@@ -1,13 +1,13 @@
 /** The form of one node: what it runs and with what, where its outcomes lead, and what happens when it takes long or fails. */
 import { Box, NativeSelect } from '@mantine/core'
 import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
+import { KindIcon } from '../../components/KindIcon'
 import { isForeign, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { kindLabel } from '../../document/tree'
 import { nameOfPath, parentPath } from '../../document/path'
 import { perform } from './apply'
-import { itemIcon } from './additions'
 import { openReferred } from './pageActions'
 import { PolicyForm } from './PolicyForm'
 import { PostForm } from './PostForm'
@@ -48,7 +48,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
   return (
     <div data-form aria-label={`Form of ${node.name}`}>
       <FormHead
-        icon={itemIcon(node.kind, 18)}
+        icon={<KindIcon icon={node.icon} size={18} />}
         title={node.path === ROOT ? 'The whole behavior' : node.name}
         tools={
           node.path !== ROOT && (
@@ -156,7 +156,7 @@ function Foreign({ node, root }: { node: EditNode; root: EditNode }) {
   const place = enclosingReference(root, node.path)
   return (
     <div data-form>
-      <FormHead icon={itemIcon(node.kind, 18)} title={node.name}>
+      <FormHead icon={<KindIcon icon={node.icon} size={18} />} title={node.name}>
         Part of a behavior that is referred to; it is changed in its own file.
       </FormHead>
       {place?.reference.document && (

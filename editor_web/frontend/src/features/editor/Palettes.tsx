@@ -1,12 +1,13 @@
 /** The palettes: what to add, and where an outcome leads. */
-import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
+import { IconCircleDot, IconFlag } from '@tabler/icons-react'
 import { useMemo } from 'react'
 import { isMachine, nodeOf, outgoingTransitions, type EditNode } from '../../document/editing/model'
 import { nameOfPath, parentPath } from '../../document/path'
 import { add, connect, disconnect, focusNode } from './actions'
-import { fits, itemIcon, itemsOf } from './additions'
+import { fits, itemsOf } from './additions'
 import { openPortPalette } from './paletteRequests'
 import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
+import { KindIcon } from '../../components/KindIcon'
 import { declaredOutcomes } from './useArrangement'
 import { draftOf, editor, rootOf, setEditor, useEditor, type PaletteRequest } from './store'
 
@@ -43,7 +44,7 @@ function AddPalette({ request, onClose }: { request: Extract<PaletteRequest, { k
         title: item.title,
         group: item.group,
         detail: item.summary,
-        icon: itemIcon(item.kind, 15),
+        icon: <KindIcon icon={item.icon} size={15} />,
         run: () => void add(item.addition, request),
       })),
     ]
@@ -87,7 +88,7 @@ function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly stri
       title: child.name,
       group: 'Nodes here',
       detail: child.title,
-      icon: <IconArrowRight size={15} aria-hidden />,
+      icon: <KindIcon icon={child.icon} size={15} />,
       run: () => void connect(from.path, from.outcome, child.name),
     })),
     ...ends.map((outcome): Choice => ({

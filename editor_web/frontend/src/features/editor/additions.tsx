@@ -1,10 +1,8 @@
 /** Everything that can be put into a container, for the library and the palette: one list. */
-import { createElement } from 'react'
 import type { CatalogueBody, EntryName, StateView } from '../../api/types'
 import { isTreePart, nameFor, type EditNode } from '../../document/editing/model'
 import { fileTitle, relativePath } from '../../document/path'
 import type { Addition } from './actions'
-import { NodeIcon } from './NodeIcon'
 
 export interface Item {
   readonly id: string
@@ -16,6 +14,8 @@ export interface Item {
   readonly doc: string
   readonly outcomes: readonly string[]
   readonly kind: string
+  /** The name of the icon of the node that it is; empty for an entry. */
+  readonly icon: string
   readonly onlyInTree: boolean
   readonly addition: Addition
   /** The named entry that it goes to. */
@@ -33,6 +33,7 @@ export function itemsOf(catalogue: CatalogueBody, id: string): readonly Item[] {
     doc: each.doc,
     outcomes: [],
     kind: each.kind,
+    icon: each.icon,
     onlyInTree: each.only_in_tree,
     addition: { kind: each.kind, name: each.kind },
   }))
@@ -46,6 +47,7 @@ export function itemsOf(catalogue: CatalogueBody, id: string): readonly Item[] {
       doc: each.description,
       outcomes: each.outcomes,
       kind: 'behavior',
+      icon: each.icon,
       onlyInTree: false,
       addition: {
         kind: 'behavior',
@@ -65,6 +67,7 @@ function stateItem(state: StateView): Item {
     doc: state.doc,
     outcomes: state.outcomes,
     kind: 'state',
+    icon: state.icon,
     onlyInTree: false,
     addition: { kind: 'state', runs: state.name, name: nameFor(state.name) },
   }
@@ -77,10 +80,6 @@ function firstLine(text: string): string {
 /** Can it stand in this container? */
 export function fits(item: Item, parent: EditNode): boolean {
   return !item.onlyInTree || isTreePart(parent.kind)
-}
-
-export function itemIcon(kind: string, size = 16) {
-  return createElement(NodeIcon, { kind, size })
 }
 
 /** The state that goes to a named entry, with the entry as its target. */

@@ -29,6 +29,7 @@ function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
     path,
     name,
     kind: 'state',
+    icon: 'state',
     title: 'test.Give',
     outcomes: ['a', 'b', 'c'],
     children: [],

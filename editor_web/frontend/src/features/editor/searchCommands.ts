@@ -25,6 +25,7 @@ export function searchCommands(): readonly PageCommand[] {
       id: `node:${node.path}`,
       title: node.name,
       group: 'In this behavior',
+      icon: node.icon,
       detail: [node.title, parentPath(node.path)].filter(Boolean).join(' · '),
       run: () => reveal(node.path),
     })),

@@ -2,6 +2,7 @@
 import { act, screen, waitFor } from '@testing-library/react'
 import { afterEach, expect, it, vi } from 'vitest'
 import { graphNode, live, node, run, show, snapshot } from '../../../testing/page'
+import type { Presence } from '../../api/types'
 import { Graph } from './Graph'
 
 const NAMES = ['home', 'look', 'approach', 'grasp', 'lift', 'carry', 'place', 'retreat']
@@ -72,3 +73,53 @@ it('follows the run by default; what a person looks at pauses it, and Follow res
   act(() => socket.tell(snapshot({ run: 'r2', seq: 2, runs: [run({ id: 'r2' })], nodes: { 'root/look': node() } })))
   expect(follows.getAttribute('aria-pressed')).toBe('true')
 })
+
+it('shows the kind of each node by its icon', async () => {
+  paneOf(1600, 800)
+  const children = [graphNode('root/home', { icon: 'path' }), graphNode('root/look', { icon: 'camera' })]
+  const root = graphNode('root', { kind: 'machine', icon: 'sitemap', initial: 'home', children })
+  show(<Graph root={root} selected={undefined} onSelect={() => undefined} shown={undefined} breadcrumb={null} />)
+  await waitFor(() => expect(document.querySelectorAll('[data-icon]').length).toBe(3))
+  expect(
+    Object.fromEntries([...document.querySelectorAll('[data-icon]')].map((each) => [nodeOf(each), each.getAttribute('data-icon')])),
+  ).toEqual({ root: 'sitemap', 'root/home': 'path', 'root/look': 'camera' })
+})
+
+const GRACE: Presence = {
+  page: 2,
+  name: 'Grace Hopper',
+  role: 'viewer',
+  document: 'behaviors/shift.yaml',
+  node: 'root/look',
+  edits: false,
+  operates: '',
+  since_s: null,
+}
+
+it('shows who else has a node selected, also inside of a collapsed container', async () => {
+  paneOf(1600, 800)
+  const children = ['left', 'right'].map((name) => graphNode(`root/look/${name}`))
+  const look = graphNode('root/look', { kind: 'concurrency', children })
+  const root = { ...ROOT, children: ROOT.children.map((child) => (child.path === look.path ? look : child)) }
+  const socket = live({ run: 'r1', runs: [run()] })
+  const user = show(
+    <Graph root={root} selected={undefined} onSelect={() => undefined} shown={undefined} breadcrumb={null} document={GRACE.document} />,
+  )
+  await screen.findByRole('button', { name: 'Collapse look' })
+  const people = (...present: Presence[]) => act(() => socket.tell({ k: 'presence', page: 1, present }))
+  people(GRACE)
+  expect(nodeOf(screen.getByTitle('Grace Hopper has it selected'))).toBe('root/look')
+  expect(screen.getByText('GH')).toBeVisible()
+  // What she has of another behavior, and what this page has itself, is not marked.
+  people({ ...GRACE, document: 'behaviors/other.yaml' }, { ...GRACE, page: 1 })
+  expect(screen.queryByTitle('Grace Hopper has it selected')).toBeNull()
+  people({ ...GRACE, node: 'root/look/left' })
+  expect(nodeOf(screen.getByTitle('Grace Hopper has it selected'))).toBe('root/look/left')
+  screen.getByRole('button', { name: 'Collapse look' }).focus()
+  await user.keyboard('{Enter}')
+  await waitFor(() => expect(nodeOf(screen.getByTitle('Grace Hopper has it selected'))).toBe('root/look'))
+})
+
+function nodeOf(part: Element): string | undefined {
+  return part.closest<HTMLElement>('.react-flow__node')?.dataset['id']
+}

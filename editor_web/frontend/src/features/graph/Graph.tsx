@@ -25,7 +25,7 @@ import classes from './graph.module.css'
 import { GraphMenu } from './GraphMenu'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
 import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
-import { ContainerNode, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
+import { ContainerNode, DocumentContext, FoldContext, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useFolding, type Folding } from './useFolding'
 import { useFollowView, useFollowing, type Following } from './useFollowing'
 import { useLayout, type LaidOut } from './useLayout'
@@ -51,6 +51,8 @@ export interface GraphProps {
   readonly behavior?: string
   /** What the menu of a node shows for its breakpoints. */
   readonly breakpointForm?: (path: string) => ReactNode
+  /** The behavior whose nodes others may have selected; theirs are not shown without. */
+  readonly document?: string
   /** Whose graph it is, where there are several. */
   readonly of?: string
 }
@@ -68,7 +70,7 @@ export function Graph(props: GraphProps) {
   )
 }
 
-function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpointForm, of }: GraphProps) {
+function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpointForm, document = '', of }: GraphProps) {
   const { ref, width, height } = useElementSize()
   const [flow, setFlow] = useState<Direction>('RIGHT')
   const pane = width > 0 && height > 0 ? { width, height } : undefined
@@ -104,25 +106,27 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb, behavior, breakpo
           </Group>
         )}
         {laidOut && pane && (
-          <FoldContext value={toggle}>
-            <Drawn
-              laidOut={laidOut}
-              pane={pane}
-              selected={selected}
-              onSelect={onSelect}
-              shown={shown}
-              following={following}
-              {...(behavior === undefined ? {} : { behavior })}
-              {...(breakpointForm && { breakpointForm })}
-            />
-          </FoldContext>
+          <DocumentContext value={document}>
+            <FoldContext value={toggle}>
+              <Drawn
+                laidOut={laidOut}
+                pane={pane}
+                selected={selected}
+                onSelect={onSelect}
+                shown={shown}
+                following={following}
+                {...(behavior === undefined ? {} : { behavior })}
+                {...(breakpointForm && { breakpointForm })}
+              />
+            </FoldContext>
+          </DocumentContext>
         )}
       </div>
     </Panel>
   )
 }
 
-interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'of'> {
+interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'document' | 'of'> {
   readonly laidOut: LaidOut
   readonly pane: Size
   readonly following: Following

@@ -18,7 +18,8 @@ const APPROACH = part('root/approach', {
   conditions: ['there: left reached and right reached'],
   children: [part('root/approach/left'), part('root/approach/right')],
 })
-const ROOT = part('root', { kind: 'machine', title: '', children: [APPROACH, part('root/rest', { title: 'flow.Wait' })] })
+const REST = part('root/rest', { title: 'flow.Wait', icon: 'flow' })
+const ROOT = part('root', { kind: 'machine', title: '', icon: 'sitemap', children: [APPROACH, REST] })
 
 function Both() {
   const [selected, setSelected] = useState<string>()
@@ -68,6 +69,7 @@ it('tells levels, states and visits, as they change', () => {
   show(<Both />)
   expect(item(/^left/)).toHaveAttribute('aria-level', '3')
   expect(item(/^rest/)).toHaveAccessibleName('rest flow.Wait active')
+  expect([/^root/, /^rest/].map((name) => item(name).querySelector('[data-icon]')?.getAttribute('data-icon'))).toEqual(['sitemap', 'flow'])
   socket.tell(snapshot({ run: 'r1', runs: [run()], nodes: { 'root/rest': node({ status: 'done', outcome: 'done', visits: 2 }) } }))
   expect(item(/^rest/)).toHaveAccessibleName('rest flow.Wait done: done ×2')
 })

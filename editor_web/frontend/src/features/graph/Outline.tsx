@@ -4,6 +4,7 @@ import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
 import { useNodeLive } from '../../api/liveParts'
 import type { GraphNode } from '../../api/types'
+import { KindIcon } from '../../components/KindIcon'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { kindLabel } from '../../document/tree'
@@ -140,6 +141,7 @@ function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle
         {hasChildren && <Chevron size={14} />}
       </span>
       <StatusIcon status={status} size={14} />
+      <KindIcon icon={node.icon} size={14} />
       <Text span inherit fw={550}>
         {node.name}
       </Text>

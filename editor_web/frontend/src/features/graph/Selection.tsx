@@ -4,6 +4,7 @@ import { lookup } from '../../document/dict'
 import { useLive } from '../../api/live'
 import type { GraphNode } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
+import { KindIcon } from '../../components/KindIcon'
 import { StatusBadge } from '../../components/StatusBadge'
 import { nodeWords, statusOf } from '../../document/runState'
 import { duration } from '../../document/time'
@@ -22,6 +23,7 @@ export function Selection({ node }: { node: GraphNode }) {
       aria-label={`Selected: ${node.name}`}
     >
       <Group gap="xs">
+        <KindIcon icon={node.icon} />
         <strong>{node.name}</strong>
         {live && <StatusBadge look={statusOf(live.status)} words={nodeWords(live.status, live.status === 'active' ? '' : live.outcome)} />}
       </Group>

@@ -1,13 +1,15 @@
 /** One node on the canvas: a leaf, or a container with its children drawn inside. */
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import { UnstyledButton } from '@mantine/core'
-import { IconArrowsSplit2, IconBox, IconChevronDown, IconChevronRight, IconFileImport, IconLogout, IconSitemap } from '@tabler/icons-react'
+import { IconChevronDown, IconChevronRight, IconLogout } from '@tabler/icons-react'
 import { createContext, Fragment, memo, useContext } from 'react'
 import { useLive } from '../../api/live'
 import { useNodeLive, useNodePart } from '../../api/liveParts'
 import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { GoalLine } from '../../components/GoalLine'
+import { KindIcon } from '../../components/KindIcon'
+import { OthersHere } from '../../components/OthersHere'
 import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
 import { transitionId } from '../../document/edgeId'
@@ -21,12 +23,8 @@ import type { OutcomeNode, StepNode } from './elements'
 import { HeldText, Marks } from './Marks'
 import classes from './step.module.css'
 
-const KIND_ICONS: Record<string, typeof IconBox> = {
-  machine: IconSitemap,
-  concurrency: IconArrowsSplit2,
-  behavior: IconFileImport,
-}
-
+/** The behavior that is drawn: those who have a node of it selected on other pages are shown at it. */
+export const DocumentContext = createContext('')
 /** Folds a container by its path, or unfolds it. */
 export const FoldContext = createContext<((path: string) => void) | undefined>(undefined)
 
@@ -48,7 +46,9 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
       <span key={live?.visits ?? 0} className={live && live.visits > 0 ? classes.blink : undefined} />
       <div className={classes.head}>
         <StatusIcon status={status} />
+        <KindIcon icon={data.node.icon} />
         <Name name={data.node.name} />
+        <Others path={id} isFolded={data.isFolded} />
         {data.isFolded && <Fold path={id} name={data.node.name} isFolded />}
         {live && live.visits > 1 && (
           <span className={classes.quiet} style={{ marginLeft: 'auto' }}>
@@ -74,7 +74,6 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
   const live = useNodeLive(id)
   const status = statusOf(live?.status ?? 'idle')
   const { node } = data
-  const Icon = KIND_ICONS[node.kind] ?? IconBox
   return (
     <div
       className={`${classes.step} ${classes.container}`}
@@ -88,8 +87,9 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
       {data.isInitial && <span className={classes.initial} title="The first state" />}
       <Marks path={id} />
       <div className={classes.head}>
-        <Icon size={16} color="var(--quiet)" style={{ flex: 'none' }} aria-hidden />
+        <KindIcon icon={node.icon} />
         <Name name={node.name} />
+        <Others path={id} />
         <span className={`${classes.kind} cut-text`}>{node.disabled === false ? kindLabel(node.kind) : disabledText(node.disabled)}</span>
         <span style={{ flex: 1 }} />
         <HeldText path={id} />
@@ -110,6 +110,11 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
     </div>
   )
 })
+
+/** Who else has the node selected, or one inside of a folded one. */
+function Others(at: { path: string; isFolded?: boolean }) {
+  return <OthersHere document={useContext(DocumentContext)} {...at} />
+}
 
 /** The name of a node, which may go on in a second line after an underscore. */
 function Name({ name }: { name: string }) {

@@ -7,8 +7,15 @@ import { offerCommands, pageCommands } from '../../api/search'
 import type { NameHit } from '../../api/types'
 import { SearchBox } from './SearchBox'
 
-const NODE: NameHit = { kind: 'node', id: 'behaviors/a.yaml', path: 'root/grasp', title: 'grasp', detail: 'gripper.Grasp · a' }
-const RUN: NameHit = { kind: 'run', id: 'r1', path: '', title: 'grasping', detail: 'r1 finished' }
+const NODE: NameHit = {
+  kind: 'node',
+  id: 'behaviors/a.yaml',
+  path: 'root/grasp',
+  title: 'grasp',
+  detail: 'gripper.Grasp · a',
+  icon: 'gripper',
+}
+const RUN: NameHit = { kind: 'run', id: 'r1', path: '', title: 'grasping', detail: 'r1 finished', icon: '' }
 const opened = vi.fn()
 const home = vi.fn()
 const PAGES = [{ id: 'page:/', title: 'Home', group: 'Pages', run: home }]
@@ -27,6 +34,7 @@ it('shows what the server finds, by kind, and leads there by the keyboard', asyn
   await user.type(screen.getByRole('combobox', { name: 'Search' }), 'gra')
   expect(await screen.findByText('gripper.Grasp · a')).toBeInTheDocument()
   expect(screen.getByText('grasping')).toBeInTheDocument()
+  expect(screen.getByRole('option', { name: /gripper.Grasp/ }).querySelector('[data-icon]')).toHaveAttribute('data-icon', 'gripper')
   await user.keyboard('{Enter}')
   await waitFor(() => expect(opened.mock.calls).toEqual([[NODE]]))
 })

@@ -1,11 +1,12 @@
 /** Leads to anything by its name, and runs the commands of the page that is shown, from the keyboard. */
 import { useDebouncedValue } from '@mantine/hooks'
-import { IconBinaryTree2, IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin, IconPuzzle, IconRoute } from '@tabler/icons-react'
+import { IconBroadcast, IconCommand, IconCube, IconHistory, IconMapPin } from '@tabler/icons-react'
 import { useMemo, useState, type ReactNode } from 'react'
 import { useLastAnswer } from '../../api/queryClient'
 import { closeSearch, namesQuery, pageCommands, type PageCommand } from '../../api/search'
 import type { NameHit } from '../../api/types'
 import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
+import { KindIcon } from '../../components/KindIcon'
 
 export interface SearchBoxProps {
   /** The pages that can be gone to from everywhere. */
@@ -18,10 +19,11 @@ export interface SearchBoxProps {
 const DELAY_MS = 120
 const SIZE = 15
 
-const KINDS: Readonly<Record<NameHit['kind'], { readonly group: string; readonly icon: ReactNode }>> = {
-  behavior: { group: 'Behaviors', icon: <IconRoute size={SIZE} aria-hidden /> },
-  node: { group: 'States and containers', icon: <IconBinaryTree2 size={SIZE} aria-hidden /> },
-  state: { group: 'States of the library: find usages', icon: <IconPuzzle size={SIZE} aria-hidden /> },
+/** What runs is drawn as its kind of node. */
+const KINDS: Readonly<Record<NameHit['kind'], { readonly group: string; readonly icon?: ReactNode }>> = {
+  behavior: { group: 'Behaviors' },
+  node: { group: 'States and containers' },
+  state: { group: 'States of the library: find usages' },
   entry: { group: 'Entries', icon: <IconMapPin size={SIZE} aria-hidden /> },
   item: { group: 'Items of the cell', icon: <IconCube size={SIZE} aria-hidden /> },
   topic: { group: 'Topics', icon: <IconBroadcast size={SIZE} aria-hidden /> },
@@ -33,7 +35,11 @@ export function SearchBox({ pages, edited, onOpen }: SearchBoxProps) {
   const [asked] = useDebouncedValue(text.trim(), DELAY_MS)
   const { hits, problem } = useHits(asked)
   const choices = useMemo(
-    () => [...pageCommands(), ...pages].map((each): Choice => ({ icon: <IconCommand size={SIZE} aria-hidden />, ...each })),
+    () =>
+      [...pageCommands(), ...pages].map((each): Choice => ({
+        ...each,
+        icon: each.icon === undefined ? <IconCommand size={SIZE} aria-hidden /> : <KindIcon icon={each.icon} size={SIZE} />,
+      })),
     [pages],
   )
   return (
@@ -50,7 +56,7 @@ export function SearchBox({ pages, edited, onOpen }: SearchBoxProps) {
 }
 
 function choiceOf(hit: NameHit, onOpen: SearchBoxProps['onOpen']): Choice {
-  const { group, icon } = KINDS[hit.kind]
+  const { group, icon = <KindIcon icon={hit.icon} size={SIZE} /> } = KINDS[hit.kind]
   return { id: `${hit.kind}:${hit.id}:${hit.path}`, title: hit.title, detail: hit.detail, group, icon, run: () => onOpen(hit) }
 }
 

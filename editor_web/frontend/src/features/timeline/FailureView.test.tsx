@@ -109,6 +109,7 @@ it('tells what differs from the last good run', async () => {
     documents: [],
     data: [],
     data_left_out: 0,
+    icons: {},
   }
   failing().on('GET /runs/r1/last-good-run', comparison.left).on('GET /past-runs/comparison', comparison)
   live({ runs: [FAILED] })

@@ -2,7 +2,7 @@
 import { Box, Flex, Paper, useComputedColorScheme } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useEffect, useRef, useState, type KeyboardEvent } from 'react'
-import type { ActivationInterval } from '../../api/types'
+import type { ActivationInterval, GraphNode } from '../../api/types'
 import { rowOf, type Mark } from '../../document/measured'
 import { spanAt, timeAt, xOf, type ShownRow, type View } from '../../document/timeline'
 import { cleared, colorsOf, drawBars, drawHead, HEAD, ROW } from './draw'
@@ -14,6 +14,8 @@ import { useGestures } from './useGestures'
 
 export interface LanesProps {
   readonly rows: readonly ShownRow[]
+  /** The nodes of the graph by path. */
+  readonly nodes: ReadonlyMap<string, GraphNode>
   readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
   readonly marks: readonly Mark[]
   readonly view: View
@@ -148,6 +150,7 @@ export function Lanes(props: LanesProps) {
         <Box pos="relative" h={rows.length * ROW}>
           <Names
             rows={rows}
+            nodes={props.nodes}
             spans={spans}
             selected={selected}
             cursorS={cursorS}

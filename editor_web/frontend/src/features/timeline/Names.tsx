@@ -2,15 +2,19 @@
 import { Box, Flex, Text } from '@mantine/core'
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useRef, useState, type KeyboardEvent } from 'react'
-import type { ActivationInterval } from '../../api/types'
+import type { ActivationInterval, GraphNode } from '../../api/types'
+import { KindIcon } from '../../components/KindIcon'
 import { StatusIcon } from '../../components/StatusIcon'
 import { statusOf } from '../../document/runState'
 import { spanAt, type ShownRow } from '../../document/timeline'
+import { kindLabel } from '../../document/tree'
 import { ROW } from './draw'
 import classes from './Timeline.module.css'
 
 export interface NamesProps {
   readonly rows: readonly ShownRow[]
+  /** The nodes of the graph by path; a run may know others. */
+  readonly nodes: ReadonlyMap<string, GraphNode>
   readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
   readonly selected: string | undefined
   readonly cursorS: number
@@ -22,7 +26,7 @@ export interface NamesProps {
 
 const BEYOND = 4
 
-export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow, onToggle }: NamesProps) {
+export function Names({ rows, nodes, spans, selected, cursorS, topPx, heightPx, onShow, onToggle }: NamesProps) {
   const tree = useRef<HTMLUListElement>(null)
   const [reached, setReached] = useState(0)
   const first = Math.max(0, Math.floor(topPx / ROW) - BEYOND)
@@ -64,6 +68,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
     <ul className={`${classes.names} plain-list`} role="tree" aria-label="Nodes of the timeline" ref={tree}>
       {rows.slice(first, last).map((row, offset) => {
         const index = first + offset
+        const node = nodes.get(row.path)
         const status = statusAt(spans.get(row.path) ?? [], cursorS)
         const Chevron = row.isOpen ? IconChevronDown : IconChevronRight
         return (
@@ -107,6 +112,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
               {row.hasChildren && <Chevron size={13} />}
             </Box>
             <StatusIcon status={statusOf(status)} size={12} />
+            {node && <KindIcon icon={node.icon} title={node.title || kindLabel(node.kind)} size={12} />}
             <Text span inherit truncate>
               {row.name}
             </Text>

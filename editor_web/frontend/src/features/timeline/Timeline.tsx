@@ -72,15 +72,15 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
   const all = useMarks(subject, course?.marks, isShown, isGoingOn)
   usePlayback(subject, nowS)
 
-  const order = useMemo(() => (behavior.graph ? flatten(behavior.graph).map((each) => each.path) : []), [behavior])
+  const nodes = useMemo(() => new Map(behavior.graph ? flatten(behavior.graph).map((each) => [each.path, each]) : []), [behavior])
   const paths = course?.rows
   const rows = useMemo(() => {
     const known = [...(paths?.keys() ?? [])]
     // Of large behaviors the upper nodes are open at first.
     const shut = known.length > MANY_ROWS ? known.filter((path) => depthOf(path) > 1) : []
     const closed = new Set([...shut.filter((path) => !toggled.has(path)), ...[...toggled].filter((path) => !shut.includes(path))])
-    return rowsOf(known, order, closed)
-  }, [paths, order, toggled])
+    return rowsOf(known, [...nodes.keys()], closed)
+  }, [paths, nodes, toggled])
   const marks = useMemo(() => all.marks.filter((mark) => kinds.has(mark.kind as MarkKind)), [all.marks, kinds])
   const view = chosenView ?? wholeView(nowS)
   const spans = useDetail(subject, course, view, chosenView !== undefined)
@@ -157,6 +157,7 @@ export function Timeline({ behavior, run, node, onShow, curves }: TimelineProps)
     <Box ref={sized} pos="absolute" inset={0}>
       <Lanes
         rows={rows}
+        nodes={nodes}
         spans={spans}
         marks={marks}
         view={view}
