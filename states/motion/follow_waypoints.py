@@ -39,7 +39,7 @@ class FollowWaypoints(State, frozen=True, kw_only=True):
     ]
     blend_m: BlendDistance = 0.02
     speed: Speed = 0.5
-    speed_m_s: ToolSpeed | None = None
+    speed_m_s: Annotated[ToolSpeed | None, Meta(description="Maximum speed of the tool centre point, if any")] = None
     match: PoseMatch = "pose"
 
     def resources(self) -> tuple[str, ...]:
