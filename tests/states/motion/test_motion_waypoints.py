@@ -108,7 +108,7 @@ async def test_it_is_undone_through_the_passed_waypoints_in_reverse(
     ctx = FakeContext({"left/follow_waypoints": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
     assert PLAIN.cannot_undo(activation(result)) == ""
     await PLAIN.undo(ctx, activation(result))
-    blends = {FIRST: 0.1, SECOND: 0.02}
+    blends: dict[tuple[float, ...], float] = {FIRST: 0.1, SECOND: 0.02}
     back = (*(Waypoint(joints=joints, blend_m=blends[joints]) for joints in through), Waypoint(joints=START))
     assert ctx.sent == [("left/follow_waypoints", FollowGoal(waypoints=back, speed=0.3))]
 
@@ -138,18 +138,18 @@ def test_the_targets_that_are_known_before_a_run_have_their_index() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("waypoints", "message"),
-    [
-        ([], "length >= 1"),
-        ([{}], "give either `joints` or `pose`"),
-        ([{"joints": [0.0], "pose": {"entry": "a"}}], "give either `joints` or `pose`"),
-        ([{"joints": [0.0], "blend": 0.1}], "blend"),
-        ([{"joints": [0.0], "blend_m": -0.1}], "blend_m"),
-        ([{"pose": {}}], "give either `entry` or `xyz`"),
-        ([[0.0, 1.0]], "object"),
-    ],
-)
+MALFORMED: list[tuple[list[object], str]] = [
+    ([], "length >= 1"),
+    ([{}], "give either `joints` or `pose`"),
+    ([{"joints": [0.0], "pose": {"entry": "a"}}], "give either `joints` or `pose`"),
+    ([{"joints": [0.0], "blend": 0.1}], "blend"),
+    ([{"joints": [0.0], "blend_m": -0.1}], "blend_m"),
+    ([{"pose": {}}], "give either `entry` or `xyz`"),
+    ([[0.0, 1.0]], "object"),
+]
+
+
+@pytest.mark.parametrize(("waypoints", "message"), MALFORMED)
 def test_malformed_waypoints_are_refused(waypoints: list[object], message: str) -> None:
     """The document check finds it before anything moves."""
     with pytest.raises(msgspec.ValidationError, match=message):
