@@ -32,6 +32,7 @@ from states.motion.execute_plan import ExecutePlan
 from states.motion.follow_cart_dmp import FollowCartDmp
 from states.motion.follow_joint_dmp import FollowJointDmp
 from states.motion.follow_recording import FollowRecording
+from states.motion.follow_waypoints import FollowWaypoints
 from states.motion.guide import Guide
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
 from states.motion.move_free import MoveFree
@@ -74,6 +75,7 @@ _STATES: tuple[type[State], ...] = (
     FollowCartDmp,
     FollowJointDmp,
     FollowRecording,
+    FollowWaypoints,
     ForgetOccupancy,
     Grasp,
     Guide,

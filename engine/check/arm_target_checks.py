@@ -128,5 +128,7 @@ def _finding(named: _Named, drawn: StaticCell) -> Finding | None:
     fault = drawn.fault(target)
     if fault is None:
         return None
-    message = f"`{target.parameter}`: {fault.message}"
-    return subject.finding(_CODES[fault.kind], message, named.path, "with", target.parameter, hint=fault.hint)
+    index = () if target.index is None else (target.index,)
+    name = target.parameter if target.index is None else f"{target.parameter}[{target.index}]"
+    keys = ("with", target.parameter, *index)
+    return subject.finding(_CODES[fault.kind], f"`{name}`: {fault.message}", named.path, *keys, hint=fault.hint)

@@ -13,12 +13,14 @@ from engine.skills.motion import PoseMatch
 class ArmTarget(msgspec.Struct, frozen=True, kw_only=True):
     """A target that a state moves an arm to: `joints`, radians in the arm's order, or the tool at `pose`.
 
-    `parameter` is the state's parameter that defines the target; `match` selects the components of the pose to reach.
+    `parameter` is the state's parameter that defines the target, and `index` its place there if that is a list;
+    `match` selects the components of the pose to reach.
     The pose may be in the frame `world` or in that of the arm's base.
     """
 
     robot: str
     parameter: str
+    index: int | None = None
     joints: tuple[float, ...] = ()
     pose: Pose | None = None
     match: PoseMatch = "pose"

@@ -27,6 +27,7 @@ from robots.arm.services.arm_status import ArmStatusPublisher
 from robots.arm.services.forward_preview import ForwardPreview
 from robots.arm.services.inverse_kinematics_services import InverseKinematicsServices
 from robots.arm.services.output_services import OutputServices
+from robots.arm.waypoint_motions import WaypointMotions
 from robots.gripper.tool_server import ToolServer
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
@@ -84,6 +85,7 @@ class ArmServer:
         self._report = report = ArmStatusPublisher(runner)
         self._groups: tuple[SkillGroup, ...] = (
             PathMotions(runner),
+            WaypointMotions(runner),
             InverseKinematicsServices(runner),
             ForwardPreview(runner),
             DmpMotions(runner),

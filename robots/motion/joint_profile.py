@@ -49,7 +49,7 @@ def plan_joints(
         RobotError: the goal has a wrong number of joints, or a joint more than 1 mrad beyond its limit; the speed is
             not a share.
     """
-    goal = _within_limits(goal, limits, joint_names)
+    goal = within_limits(goal, limits, joint_names)
     if not _SLOWEST_SHARE <= speed <= 1.0:
         raise RobotError(f"the speed cannot be {speed:g}", hint=f"give a share from {_SLOWEST_SHARE:g} to 1")
     farthest = float(np.abs(goal - start).max())
@@ -84,8 +84,12 @@ def _resting(start: Array, goal: Array) -> JointTrajectory:
     )
 
 
-def _within_limits(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> Array:
-    """Return the goal; a joint goal slightly beyond its limit, as measured at the limit, is clipped to it."""
+def within_limits(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> Array:
+    """Return the goal; a joint goal slightly beyond its limit, as measured at the limit, is clipped to it.
+
+    Raises:
+        RobotError: wrong number of joints, or a joint beyond its limit or not finite.
+    """
     if len(goal) != len(joint_names):
         raise RobotError(f"the goal has {len(goal)} joints", hint=f"this arm has {len(joint_names)}")
     clipped = np.clip(goal, limits.lower_rad, limits.upper_rad)

@@ -9,11 +9,11 @@ from states.motion.motion_target import NO_OFFSET, EntryTarget, JointTarget, Pos
 
 
 def static_joint_target(
-    robot: str, target: JointTarget | None, stored: StoredTargets, *, parameter: str
+    robot: str, target: JointTarget | None, stored: StoredTargets, *, parameter: str, index: int | None = None
 ) -> tuple[ArmTarget, ...]:
     """Return the joint target of a state; nothing if there is none or it is not known before the run."""
     joints = stored.joints(target.entry) if isinstance(target, EntryTarget) else target
-    return (ArmTarget(robot=robot, parameter=parameter, joints=joints),) if joints else ()
+    return (ArmTarget(robot=robot, parameter=parameter, index=index, joints=joints),) if joints else ()
 
 
 def static_pose_target(
@@ -22,6 +22,7 @@ def static_pose_target(
     stored: StoredTargets,
     *,
     parameter: str,
+    index: int | None = None,
     offset_m: Vector3 = NO_OFFSET,
     back_m: float = 0.0,
     match: PoseMatch = "pose",
@@ -31,7 +32,7 @@ def static_pose_target(
     if pose is None or (offset_m != NO_OFFSET and pose.frame != "world"):
         return ()
     retracted = retracted_pose(offset_pose(pose, offset_m, where=parameter), back_m)
-    return (ArmTarget(robot=robot, parameter=parameter, pose=retracted, match=match),)
+    return (ArmTarget(robot=robot, parameter=parameter, index=index, pose=retracted, match=match),)
 
 
 def _pose(target: PoseTarget | None, stored: StoredTargets) -> Pose | None:

@@ -54,6 +54,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "SearchSummary ~ SearchView": "made from its fields, so that a page gets each of them; no field is written twice",
     "SetTransition ~ TransitionTaken": "an edit of a document; that a run took a transition",
     "SweepSummary ~ SweepView": "made from its fields, so that a page gets each of them; no field is written twice",
+    "Waypoint ~ WaypointTarget": "values for an arm; values or names of entries, and a blend or that of the state",
 }
 """Pairs of classes with nearly the same names of fields, and why they are not one class."""
 

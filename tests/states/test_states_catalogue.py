@@ -50,6 +50,7 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "motion.FollowCartDmp",
         "motion.FollowJointDmp",
         "motion.FollowRecording",
+        "motion.FollowWaypoints",
         "motion.Guide",
         "motion.LearnCartDmp",
         "motion.LearnJointDmp",

@@ -59,7 +59,14 @@ def _check_state(
             if fault is not None:
                 index, message, hint = fault
                 keys = ("with", name, *steps, *(() if index is None else (index,)))
-                yield subject.finding("unreachable-joints", f"`{name}`: {message}", placed.path, *keys, hint=hint)
+                yield subject.finding(
+                    "unreachable-joints", f"`{_label(name, steps)}`: {message}", placed.path, *keys, hint=hint
+                )
+
+
+def _label(name: str, steps: tuple[str | int, ...]) -> str:
+    """Return the name of a value inside a parameter, such as `waypoints[1].joints`."""
+    return name + "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
 
 
 def _fault(

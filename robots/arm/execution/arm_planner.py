@@ -6,6 +6,7 @@ import asyncio
 import threading
 from collections.abc import Awaitable, Callable
 from functools import partial
+from importlib import import_module
 from typing import TypeVar
 
 import numpy as np
@@ -39,8 +40,12 @@ class ArmPlanner:
         self._lock = threading.Lock()
 
     def prepare(self) -> None:
-        """Load the modules that the first pose or line would otherwise wait for; decision 0013 gives the times."""
+        """Load the modules that the first pose, line or waypoint would otherwise wait for; see decision 0013.
+
+        Compiling them in the middle of a motion could silence the engine for so long that arms are braked.
+        """
         self._inverse.prepare()
+        import_module("robots.planning.timing.waypoint_timing")
 
     async def to_joints(self, start: Array, goal: Array, *, speed: float) -> JointTrajectory:
         """Plan a joint motion to a configuration."""

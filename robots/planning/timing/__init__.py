@@ -1,4 +1,4 @@
 """From a path to a trajectory: corner blending and time parameterization (TOPP-RA) within joint limits.
 
-Used only by robots.planning.worker; independent of the scene.
+Used by robots.planning.worker for planned paths and by robots.arm for waypoints; independent of the scene.
 """

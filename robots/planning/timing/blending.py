@@ -10,6 +10,8 @@ from robots.port import Array
 
 _DUPLICATE_RAD = 1e-9
 _ARC_POINTS, _LINE_POINTS = 21, 13
+MIDDLE_SHARE = 0.1875
+"""Distance of the middle of a blend from its corner, as a share of the cut times the change of direction."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -64,6 +64,11 @@ class TimeParameterization:
         rates = self._path_rates(times_s)
         return limit_ratios(self.along, self.pieces, rates, limits.velocity, limits.acceleration, limits.jerk)
 
+    def times_at(self, lengths: Array) -> Array:
+        """Return the times at which the arc lengths (k,) in order are reached, within a millisecond."""
+        times_s = self.looks()
+        return np.interp(lengths, self._path_rates(times_s)[0], times_s)
+
     def looks(self) -> Array:
         """Return times so close that no limit is exceeded unnoticed between them."""
         return np.linspace(0.0, self.duration_s, max(3, math.ceil(self.duration_s / _LOOK_S) + 1))
@@ -72,14 +77,18 @@ class TimeParameterization:
         return path_rates(self.along, self.squares, self.passed_s, self.window_s, times_s / self.stretch)
 
 
-def time_optimal(path: BlendedPath, limits: JointRateLimits) -> TimeParameterization:
+def time_optimal(
+    path: BlendedPath, limits: JointRateLimits, *, most_squares: Array | None = None
+) -> TimeParameterization:
     """Return the nearly time-optimal time law of a path within the joints' limits, at rest at both ends.
+
+    `most_squares` (points of the path,) bounds the squared rate at each point further.
 
     Raises:
         RobotError: no time law respects the acceleration limits.
     """
     first, second, pieces = np.ascontiguousarray(path.first), np.ascontiguousarray(path.second), path.pieces()
-    ceiling = np.full(len(path.along), _ANY_SQUARE)
+    ceiling = np.full(len(path.along), _ANY_SQUARE) if most_squares is None else most_squares
     best: TimeParameterization | None = None
     for _ in range(_ROUNDS):
         squares = passing_rates(first, second, path.along, limits.velocity, limits.acceleration, ceiling.copy())

@@ -12,8 +12,8 @@ import numpy as np
 from engine.errors import RobotError
 from robots.model.robot_model import JointLimits
 from robots.motion.joint_profile import ACCELERATION_SHARE
-from robots.planning.timing.blending import BlendedPath, blend_corners, remove_duplicates
-from robots.planning.timing.time_parameterization import JointRateLimits, time_optimal
+from robots.planning.timing.blending import MIDDLE_SHARE, BlendedPath, blend_corners, remove_duplicates
+from robots.planning.timing.time_parameterization import JointRateLimits, TimeParameterization, time_optimal
 from robots.port import Array, JointTrajectory
 
 _SAMPLE_S = 0.002
@@ -61,16 +61,41 @@ def time_path(
         )
     waypoints = remove_duplicates(path)
     if len(waypoints) == 1:
-        rest = JointTrajectory(
-            dt_s=_SAMPLE_S, position_rad=np.repeat(waypoints, 2, axis=0), velocity_rad_s=np.zeros((2, path.shape[1]))
-        )
-        return TimedTrajectory(trajectory=rest, stops=0)
+        return TimedTrajectory(trajectory=resting(waypoints[0]), stops=0)
     cuts = _free_cuts(waypoints, is_free)
-    corners = [0, *(i for i in range(1, len(waypoints) - 1) if cuts[i] == 0.0), len(waypoints) - 1]
     sections = tuple(
-        blend_corners(waypoints[first : last + 1], cuts[first : last + 1]) for first, last in pairwise(corners)
+        blend_corners(waypoints[first : last + 1], cuts[first : last + 1]) for first, last in pairwise(stops_of(cuts))
     )
-    return TimedTrajectory(trajectory=_concatenate(sections, limits, speed), stops=len(sections) - 1)
+    allowed = rate_limits(limits, speed)
+    laws = tuple(time_optimal(section, allowed) for section in sections)
+    return TimedTrajectory(trajectory=concatenate(sections, laws), stops=len(sections) - 1)
+
+
+def rate_limits(limits: JointLimits, speed: float) -> JointRateLimits:
+    """Return the limits of a trajectory at `speed`, the share of the joint speed limits."""
+    return JointRateLimits(
+        velocity=np.array(limits.velocity_rad_s) * (speed * _SHARE),
+        acceleration=np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE),
+        jerk=np.array(limits.jerk_rad_s3) * _SHARE,
+    )
+
+
+def resting(joints: Array) -> JointTrajectory:
+    """Return the trajectory of an arm that is already at its goal."""
+    position = np.repeat(joints[None], 2, axis=0)
+    return JointTrajectory(dt_s=_SAMPLE_S, position_rad=position, velocity_rad_s=np.zeros_like(position))
+
+
+def stops_of(cuts: Array) -> list[int]:
+    """Return the indices of the waypoints where the arm rests: both ends, and those without a blend."""
+    return [0, *(i for i in range(1, len(cuts) - 1) if cuts[i] == 0.0), len(cuts) - 1]
+
+
+def longest_cut_rad(before: Array, after: Array, lengths: tuple[float, float]) -> float:
+    """Return the longest blend of a corner between two directions and lines; 0 where the path turns back."""
+    if float(np.linalg.norm(before + after)) < 2.0 * _TURNING_BACK:
+        return 0.0
+    return min(_LONGEST_CUT_RAD, 0.5 * lengths[0], 0.5 * lengths[1])
 
 
 def _free_cuts(waypoints: Array, is_free: Callable[[Array], bool]) -> Array:
@@ -80,11 +105,11 @@ def _free_cuts(waypoints: Array, is_free: Callable[[Array], bool]) -> Array:
     cuts = np.zeros(len(waypoints))
     for i in range(1, len(waypoints) - 1):
         before, after = directions[i - 1], directions[i]
-        if float(np.linalg.norm(before + after)) < 2.0 * _TURNING_BACK:
+        longest = longest_cut_rad(before, after, (float(lengths[i - 1]), float(lengths[i])))
+        if longest == 0.0:
             continue
         # The largest deviation from the corner is in the middle: 3/16 of a cut times the change of direction.
-        desired = _DEVIATION_RAD / max(1e-9, 0.1875 * float(np.linalg.norm(after - before)))
-        cut = min(desired, _LONGEST_CUT_RAD, 0.5 * float(lengths[i - 1]), 0.5 * float(lengths[i]))
+        cut = min(longest, _DEVIATION_RAD / max(1e-9, MIDDLE_SHARE * float(np.linalg.norm(after - before))))
         for _ in range(_HALVINGS):
             corner = waypoints[i] + np.outer((-cut, 0.0, cut), np.ones(waypoints.shape[1])) * np.vstack(
                 (before, before, after)
@@ -96,18 +121,13 @@ def _free_cuts(waypoints: Array, is_free: Callable[[Array], bool]) -> Array:
     return cuts
 
 
-def _concatenate(sections: tuple[BlendedPath, ...], limits: JointLimits, speed: float) -> JointTrajectory:
-    """Return the concatenated sections, at rest between them, on one grid of samples."""
-    allowed = JointRateLimits(
-        velocity=np.array(limits.velocity_rad_s) * (speed * _SHARE),
-        acceleration=np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE),
-        jerk=np.array(limits.jerk_rad_s3) * _SHARE,
-    )
-    laws = [time_optimal(section, allowed) for section in sections]
+def concatenate(sections: tuple[BlendedPath, ...], laws: tuple[TimeParameterization, ...]) -> JointTrajectory:
+    """Return the concatenated sections with their time laws, at rest between them, on one grid of samples."""
     ends = np.cumsum([0.0, *(law.duration_s for law in laws)])
     samples = max(2, math.ceil(float(ends[-1]) / _SAMPLE_S) + 1)
     at = np.linspace(0.0, float(ends[-1]), samples)
-    position, velocity = np.empty((samples, len(allowed.jerk))), np.empty((samples, len(allowed.jerk)))
+    joints = sections[0].position.shape[1]
+    position, velocity = np.empty((samples, joints)), np.empty((samples, joints))
     section_of = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(sections) - 1)
     for k, law in enumerate(laws):
         in_section = section_of == k

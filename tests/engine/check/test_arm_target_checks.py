@@ -67,6 +67,11 @@ def found(folder: Path, *nodes: str, level: TargetLevel = "warning", head: str =
         (f"motion.MoveFree robot: left, pose: {{xyz: [1.6, 0, 0.3], {DOWN}}}", "unreachable-target"),
         (f"motion.PlanMotion robot: left, pose: {{xyz: [1.6, 0, 0.3], {DOWN}}}", "unreachable-target"),
         (f"motion.MoveLinear robot: left, speed_m_s: 1, target: {{xyz: [1.6, 0, 0.3], {DOWN}}}", "unreachable-target"),
+        (f"motion.FollowWaypoints robot: left, waypoints: [{{pose: {{xyz: [0.5, 0, 0.3], {DOWN}}}}}]", ""),
+        (
+            f"motion.FollowWaypoints robot: left, waypoints: [{{pose: {{xyz: [1.6, 0, 0.3], {DOWN}}}}}]",
+            "unreachable-target",
+        ),
         # The same place of another arm.
         (f"motion.MovePose robot: right, target: {{xyz: [1.4, 0, 0.3], {DOWN}}}", ""),
         # Offset and approach count.

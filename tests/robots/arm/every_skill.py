@@ -16,6 +16,7 @@ from engine.skills.dmp import CartAdmitDMP, CartDMP, Compliance, JointDMP
 from engine.skills.guiding import GuideArm
 from engine.skills.jogging import JogJoints, JogTool, StepJoints, StepTool
 from engine.skills.motion import CartLinTask, CartTrapVel, JointTrapVel
+from engine.skills.waypoints import FollowWaypoints, Waypoint
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.panda_arm import home, panda_kinematics, panda_model
@@ -92,10 +93,16 @@ def _step_tool(_: Array, random_: random.Random) -> StepTool:
     return StepTool(step_m=(x, y, z), frame=random_.choice(("world", "base", "tool")))
 
 
+def _through(now: Array, random_: random.Random) -> FollowWaypoints:
+    through = (Waypoint(joints=near_home(random_), blend_m=random_.choice((0.0, 0.02))) for _ in range(3))
+    return FollowWaypoints(waypoints=(Waypoint(pose=_beside(now, random_)), *through), speed=random_.uniform(0.2, 1.0))
+
+
 MAKERS: tuple[Maker, ...] = (
     lambda _, random_: JointTrapVel(joints=near_home(random_), speed=random_.uniform(0.1, 1.0)),
     lambda now, random_: CartTrapVel(pose=_beside(now, random_), speed=0.5),
     lambda now, random_: CartLinTask(pose=_beside(now, random_), duration_s=random_.uniform(0.8, 2.0)),
+    _through,
     lambda now, random_: JointDMP(dmp=joint_dmp(now, near_home(random_))),
     lambda now, _: CartDMP(dmp=cart_dmp(now), start_reach_m=0.1, start_reach_rad=0.5),
     _pressing,

@@ -21,7 +21,7 @@ from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service, Skill
-from engine.skills import arm_control, contact, dmp, guiding, jogging, motion
+from engine.skills import arm_control, contact, dmp, guiding, jogging, motion, waypoints
 from engine.skills import direct_control as direct
 from robots.motion.dmp import no_offsets
 from robots.motion.min_jerk import min_jerk
@@ -38,7 +38,7 @@ LEFT_RUNNING_S = 0.3
 # What a goal that nobody can carry out may say, in longest words.
 MOST_WORDS = 2000
 
-MODULES = (arm_control, contact, direct, dmp, guiding, jogging, motion)
+MODULES = (arm_control, contact, direct, dmp, guiding, jogging, motion, waypoints)
 
 
 def _is_skill(kind: type[Any]) -> bool:

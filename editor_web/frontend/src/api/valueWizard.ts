@@ -1,5 +1,6 @@
 /** What somebody wants to teach or to choose on the cell, for a value of the document. */
 import { pageStore } from './pageStore'
+import type { EntryName } from './types'
 
 interface Request {
   /** What is set, for its title: `target of pick`. */
@@ -24,7 +25,13 @@ export interface PlainRequest extends Request {
   readonly kind: 'joints' | 'region' | 'grid'
 }
 
-export type WizardRequest = PoseRequest | PlainRequest
+export interface WaypointRequest extends Request {
+  readonly kind: 'waypoints'
+  /** The entries that may be waypoints. */
+  readonly entries: readonly EntryName[]
+}
+
+export type WizardRequest = PoseRequest | PlainRequest | WaypointRequest
 
 export const useWizard = pageStore<{ readonly asked: WizardRequest | undefined }>(() => ({ asked: undefined }))
 

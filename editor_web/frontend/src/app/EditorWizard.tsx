@@ -9,6 +9,7 @@ import { GridWizard } from '../features/wizards/GridWizard'
 import { JointWizard } from '../features/wizards/JointWizard'
 import { PoseWizard } from '../features/wizards/PoseWizard'
 import { RegionWizard } from '../features/wizards/RegionWizard'
+import { WaypointWizard } from '../features/wizards/WaypointWizard'
 
 const JogHere = lazyView(async () => (await import('./JogHere')).JogHere)
 
@@ -36,6 +37,8 @@ function Asked({ asked, hasView, isNarrow }: EditorWizardProps & { readonly aske
       return <RegionWizard {...shared} asked={asked} />
     case 'grid':
       return <GridWizard {...shared} asked={asked} />
+    case 'waypoints':
+      return <WaypointWizard {...shared} asked={asked} />
   }
 }
 

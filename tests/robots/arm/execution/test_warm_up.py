@@ -31,8 +31,25 @@ async def story():
         goal = JointTrapVel(joints=(0.1, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785), speed=1.0)
         return (await cell.bus.send_goal(goal, to="left").result()).status.value
 
-wanted = ("robots.model.inverse_kinematics.kernels", "eaik")
+wanted = ("robots.model.inverse_kinematics.kernels", "eaik", "robots.planning.timing.topp_ra_kernels")
 print(run_virtual(story()), [name for name in wanted if name in sys.modules])
+"""
+
+PREPARED = """
+import asyncio, sys
+from engine.clock import new_clock
+from robots.arm.execution.arm_planner import ArmPlanner
+from tests.robots.panda_arm import panda_kinematics
+
+wanted = ("robots.model.inverse_kinematics.kernels", "robots.planning.timing.topp_ra_kernels")
+
+async def story():
+    async def nothing(): ...
+    before = [name in sys.modules for name in wanted]
+    ArmPlanner(panda_kinematics(), clock=new_clock(), loaded=nothing).prepare()
+    print(before, [name in sys.modules for name in wanted])
+
+asyncio.run(story())
 """
 
 
@@ -93,3 +110,9 @@ def test_joint_motions_in_virtual_time_load_nothing_of_it() -> None:
     """A run of joint motions needs not spend that time."""
     done = subprocess.run([sys.executable, "-P", "-c", IN_VIRTUAL_TIME], capture_output=True, text=True, check=True)
     assert done.stdout == "succeeded []\n"
+
+
+def test_what_poses_and_waypoints_need_is_compiled_when_the_arm_is_prepared() -> None:
+    """In the middle of a motion, compiling would silence the engine."""
+    done = subprocess.run([sys.executable, "-c", PREPARED], capture_output=True, text=True, check=False, timeout=120)
+    assert done.stdout.strip() == "[False, False] [True, True]", done.stderr

@@ -42,6 +42,8 @@ export interface EditField {
   readonly measuredOn: string
   /** The fields of a value that has fields; without `entry`, which stands for the whole value. */
   readonly properties: readonly EditField[]
+  /** What each item of a list is; undefined where it is no list of values with fields. */
+  readonly item: EditField | undefined
   readonly fallback: unknown
 }
 
@@ -72,6 +74,7 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
         depth + 1,
       ),
     )
+  const item = schema['type'] === 'array' && depth < DEEPEST ? record(schema['items']) : {}
   const newEntry = text(combined['new_entry']) || text(combined['new_entry_of'])
   const label = text(combined['cell_label'])
   return {
@@ -102,6 +105,10 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
     jointsOf,
     measuredOn: text(combined['measured_on']),
     properties: inner,
+    item:
+      '$ref' in item || 'properties' in item
+        ? fieldFrom({ name: '', required: true, default: null, schema: item }, definitions, depth + 1)
+        : undefined,
     fallback: key.default,
   }
 }

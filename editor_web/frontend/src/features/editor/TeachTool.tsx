@@ -33,6 +33,10 @@ export function TeachTool({ node, field, value, around, onSet }: TeachToolProps)
   )
 
   function open(): void {
+    if (kind === 'waypoints') {
+      const entries = around.entries.filter((each) => each.kind === 'joints' || each.kind === 'pose')
+      return askWizard({ ...request, kind, entries })
+    }
     if (kind !== 'pose') return askWizard({ ...request, kind: kind ?? 'joints' })
     const frame = field.properties.find((each) => each.name === 'frame')
     const own = new Set(frame?.namesBeside)

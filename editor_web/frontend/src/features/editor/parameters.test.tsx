@@ -103,6 +103,22 @@ it('opens the wizard that the type of a value has, for the arm of the state', as
   await waitFor(() => expect(edits()).toMatchObject([{ name: 'target', value: { xyz: [0, 0, 1] } }]))
 })
 
+it('opens the wizard of waypoints with the entries that may be some', async () => {
+  const joints = { anyOf: [{ type: 'array', items: NUMBER, joints_of: 'robot' }, { type: 'null' }] }
+  const item = { type: 'object', properties: { joints, pose: TARGET.schema, blend_m: NUMBER } }
+  const user = fields({ robot: 'left', waypoints: [{ pose: { entry: 'tray' } }] }, key('waypoints', { type: 'array', items: item }))
+  await user.click(screen.getByLabelText('Teach waypoints'))
+  const { asked } = useWizard.getState()
+  expect(asked).toMatchObject({
+    kind: 'waypoints',
+    arm: 'left',
+    entries: [{ kind: 'pose', name: 'tray' }],
+    value: [{ pose: { entry: 'tray' } }],
+  })
+  asked?.onSet([{ joints: [0, 1] }])
+  await waitFor(() => expect(edits()).toMatchObject([{ name: 'waypoints', value: [{ joints: [0, 1] }] }]))
+})
+
 it('shows the force that the arm measures beside the one that is set', async () => {
   const user = fields({ robot: 'left', force_n: 10 }, FORCE)
   await user.click(screen.getByLabelText('Show what is measured for force_n'))
