@@ -1782,6 +1782,7 @@ export interface PastRun {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
   readonly document: string
   readonly events: number
 }
@@ -1797,6 +1798,7 @@ export interface PastRunBody {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
   readonly document: string
   readonly events: number
   readonly failed: boolean
@@ -2215,7 +2217,7 @@ export interface RunTrend {
   readonly nodes: readonly NodeTrend[]
 }
 
-/** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run. `waits` is asks, paused or locked while it waits for a person. */
+/** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run, see `run_duration_s`; of an active run it is the time so far, which advances with wall time while `ticking`. `waits` is asks, paused or locked while it waits for a person. */
 export interface RunView {
   readonly id: string
   readonly behavior: string
@@ -2226,6 +2228,7 @@ export interface RunView {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
 }
 
 /** Rows of the chosen fields, in their order: time on the server's clock, and a value each (null where none). `dropped` is the number of earlier rows that were dropped because the page was too slow. */

@@ -14,6 +14,7 @@ const RUN: RunView = {
   started_at_s: 0,
   duration_s: 3,
   waits: '',
+  ticking: false,
 }
 const FAILURE: RunFailure = {
   seq: 9,

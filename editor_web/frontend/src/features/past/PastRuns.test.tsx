@@ -26,6 +26,7 @@ function past(told: Partial<PastRunBody>): PastRunBody {
     duration_s: 2.5,
     events: 40,
     waits: '',
+    ticking: false,
     recording: '',
     here: false,
     ...told,

@@ -8,8 +8,9 @@ import { pastQueries, type PastQuery } from '../../api/timeline'
 import type { PastRunBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
+import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
-import { duration, wallTime } from '../../document/time'
+import { wallTime } from '../../document/time'
 import { dayEndS, dayStartS } from './days'
 import classes from './past.module.css'
 
@@ -153,7 +154,7 @@ function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: (
         <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
       </Group>
       <Text span display="block" fz="0.78rem" c="dimmed">
-        {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
+        {wallTime(run.started_at_s)} · <RunTime run={run} /> · {run.events} events{run.recording && ' · recorded'}
       </Text>
       <Text span display="block" fz="0.72rem" ff="monospace" c="dimmed">
         {run.id}
