@@ -380,12 +380,13 @@ export interface CauseGroup {
   readonly examples: readonly number[]
 }
 
-/** One link of the cause chain of a failure; those of a whole chain are in order, root cause first. */
-export interface CauseLink {
+/** One link as logs show it; `skill` is the skill at the address `where` in words, empty if that is no address. */
+export interface CauseLine {
   readonly message: string
   readonly where: string
   readonly kind: string
   readonly compared: readonly MeasuredValue[]
+  readonly skill: string
 }
 
 /** Whether every device of the cell is connected; the latest value of `cell/connection`. `reason` names the lost devices with the causes; for a reconnected cell, the differences from before. */
@@ -1369,7 +1370,7 @@ export interface LogLine {
   readonly level: string
   readonly path: string
   readonly text: string
-  readonly causes: readonly CauseLink[]
+  readonly causes: readonly CauseLine[]
 }
 
 /** A single-use login token, for `/login?t=<token>`. */
@@ -2156,7 +2157,7 @@ export interface RunFailure {
   readonly path: string
   readonly text: string
   readonly hint: string
-  readonly links: readonly CauseLink[]
+  readonly links: readonly CauseLine[]
   readonly steps: readonly LogLine[]
   readonly around: readonly LogLine[]
 }
