@@ -111,9 +111,12 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
 
 function CellFoot() {
   return (
-    <>
-      <BlockedPaths />
+    <Box pos="relative">
+      {/* They lie over the view above: it keeps its height, and the arms their place. */}
+      <Box pos="absolute" bottom="100%" left={0} right={0} bg="var(--surface)" style={{ zIndex: 1 }}>
+        <BlockedPaths />
+      </Box>
       <RobotStrip />
-    </>
+    </Box>
   )
 }

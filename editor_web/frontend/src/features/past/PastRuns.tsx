@@ -196,25 +196,28 @@ interface CompareChosenProps extends Pick<PastRunsProps, 'onCompare'> {
 /** What can be done with the runs that are ticked; the older one is the left one. */
 function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
   const [left, right] = chosen.toSorted((one, other) => one.started_at_s - other.started_at_s)
-  if (!left) return null
   return (
-    <Group gap="sm" my="xs" role="group" aria-label="Selected runs">
+    <Group gap="sm" my="xs" wrap="nowrap" h={30} role="group" aria-label="Selected runs">
       <Button
         size="xs"
         leftSection={<IconGitCompare size={15} aria-hidden />}
         disabled={!right}
-        onClick={() => right && onCompare(left.id, right.id)}
+        onClick={() => left && right && onCompare(left.id, right.id)}
       >
         Compare
       </Button>
-      <Text span inherit c="dimmed">
-        {right
+      <Text span inherit truncate c="dimmed">
+        {left && right
           ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}`
-          : 'Select a second run.'}
+          : left
+            ? 'Select a second run.'
+            : 'Select two runs to compare.'}
       </Text>
-      <Button size="xs" variant="subtle" color="gray" onClick={onNone}>
-        Select none
-      </Button>
+      {left && (
+        <Button size="xs" variant="subtle" color="gray" flex="none" onClick={onNone}>
+          Select none
+        </Button>
+      )}
     </Group>
   )
 }
