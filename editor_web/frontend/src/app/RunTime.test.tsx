@@ -37,33 +37,39 @@ it('goes on from what was told while the run does, also of a run that is not wat
   const socket = live({ runs: [run({ duration_s: 5, ticking: true })] })
   show(<Views lastEventS={2} />)
   expect(shown()).toEqual(['5.00 s', '5.00 s', '5.00 s'])
-  act(() => vi.advanceTimersByTime(3000))
+  pass(3000)
   expect(shown()).toEqual(['8.00 s', '8.00 s', '8.00 s'])
   // A paused run stands, and when it goes on, the pause counts.
   act(() => told(socket, { duration_s: 9, waits: 'paused', ticking: false }))
-  act(() => vi.advanceTimersByTime(3000))
+  pass(3000)
   expect(shown()).toEqual(['9.00 s', '9.00 s', '9.00 s'])
   act(() => told(socket, { duration_s: 12.5, ticking: true }))
-  act(() => vi.advanceTimersByTime(1000))
+  pass(1000)
   expect(shown()).toEqual(['13.5 s', '13.5 s', '13.5 s'])
 })
 
 it('is that of its last event when it has ended', () => {
   live({ runs: [run({ status: 'finished', outcome: 'good', success: true, duration_s: 7.5 })] })
   show(<Views lastEventS={7.5} />)
-  act(() => vi.advanceTimersByTime(3000))
+  pass(3000)
   expect(shown()).toEqual(['7.50 s', '7.50 s', '7.50 s'])
 })
 
 it('is not the moment of the timeline that is shown', () => {
   live({ run: 'r1', runs: [run({ duration_s: 5, ticking: true })], now_s: 5, ticking: true, control: control() })
   show(<Views lastEventS={2} />)
-  act(() => vi.advanceTimersByTime(1000))
+  pass(1000)
   expect(shown()).toEqual(['6.00 s', '6.00 s', '6.00 s'])
   act(() => useLive.setState({ past: { run: 'r1', nowS: 1 } as never, nowS: 1, ticking: false }))
-  act(() => vi.advanceTimersByTime(1000))
+  pass(1000)
   expect(shown()).toEqual(['7.00 s', '7.00 s', '7.00 s'])
 })
+
+function pass(ms: number): void {
+  act(() => {
+    vi.advanceTimersByTime(ms)
+  })
+}
 
 function told(socket: ReturnType<typeof live>, change: Parameters<typeof run>[0]): void {
   socket.tell({
