@@ -159,8 +159,8 @@ class ProcessHost:
         except TimeoutError as error:
             raise RobotError(
                 f"{_WHAT} was started and had not built the world after {limit_s:g} s",
-                hint="the machine may be overloaded: end other programs and start again, or allow more time in the cell,"
-                f" `world: {{kind: mujoco, start_limit_s: {2 * limit_s:g}}}`",
+                hint="the machine may be overloaded: end other programs and start again, or allow more time in the"
+                f" cell, `world: {{kind: mujoco, start_limit_s: {2 * limit_s:g}}}`",
             ) from error
         assert isinstance(answer, WorldReady)
         return answer

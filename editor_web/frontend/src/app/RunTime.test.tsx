@@ -12,18 +12,18 @@ afterEach(() => vi.useRealTimers())
 
 /** As lists, the row of states and the journal show it; the journal knows it up to its last event. */
 function Views({ lastEventS }: { readonly lastEventS: number }) {
-  const told = useLive((s) => s.runs[0])
-  const commands = useCommands(told, undefined)
-  if (!told) return null
+  const shownRun = useLive((s) => s.runs[0])
+  const commands = useCommands(shownRun, undefined)
+  if (!shownRun) return null
   return (
     <>
       <p aria-label="list">
-        <RunTime run={told} />
+        <RunTime run={shownRun} />
       </p>
       <p aria-label="journal">
-        <RunTime run={{ ...told, behavior: 'shift', duration_s: lastEventS } as typeof told} />
+        <RunTime run={{ ...shownRun, behavior: 'shift', duration_s: lastEventS } as typeof shownRun} />
       </p>
-      <StatusRow run={told} root={null} commands={commands} onShow={() => undefined} />
+      <StatusRow run={shownRun} root={null} commands={commands} onShow={() => undefined} />
     </>
   )
 }
@@ -73,7 +73,18 @@ function pass(ms: number): void {
 
 function told(socket: ReturnType<typeof live>, change: Parameters<typeof run>[0]): void {
   socket.tell({
-    ...{ k: 'delta', run: '', after: 1, seq: 1, now_s: 0, ticking: false, nodes: {}, log: [], dropped: 0, control: null },
-    ...{ lock_reasons: {}, robots: {}, runs: [run(change)] },
+    k: 'delta',
+    run: '',
+    after: 1,
+    seq: 1,
+    now_s: 0,
+    ticking: false,
+    runs: [run(change)],
+    nodes: {},
+    log: [],
+    dropped: 0,
+    control: null,
+    lock_reasons: {},
+    robots: {},
   })
 }

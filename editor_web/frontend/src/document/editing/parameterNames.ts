@@ -28,7 +28,7 @@ export function nameKinds({ names, entries }: NameSources, parameter: Mapping): 
 }
 
 export function nameKindOf(parameter: Mapping): string {
-  const [word] = ['cell_name', 'entry'].filter((key) => typeof lookup(parameter, key) === 'string')
+  const word = ['cell_name', 'entry'].find((key) => typeof lookup(parameter, key) === 'string')
   return word ? `${word} ${String(lookup(parameter, word))}` : ''
 }
 
