@@ -5,7 +5,7 @@ from __future__ import annotations
 import traceback
 
 from engine.errors import Cause, CauseLine, FlexcellError
-from engine.skill_titles import skill_words
+from engine.skill import skill_words
 
 
 def cause_of(error: BaseException) -> Cause:

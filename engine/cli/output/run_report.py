@@ -16,7 +16,7 @@ from engine.errors import Cause
 from engine.event import Event
 from engine.journal import encode_event_log
 from engine.runtime.run_result import RunResult
-from engine.skill_titles import skill_words
+from engine.skill import skill_words
 
 
 def report_run(

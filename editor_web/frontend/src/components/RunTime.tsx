@@ -9,17 +9,17 @@ import { Elapsed, TimeText } from './Elapsed'
 
 /** A run that is active on this server goes on, also where it was read from the journal. */
 export function RunTime({ run }: { readonly run: Pick<RunView, 'id' | 'status' | 'duration_s'> }) {
-  const told = useLive((s) => s.runs.find((each) => each.id === run.id))
-  const toldAtMs = useLive((s) => lookup(s.runsAtMs, run.id)) ?? 0
+  const latest = useLive((s) => s.runs.find((each) => each.id === run.id))
+  const receivedAtMs = useLive((s) => lookup(s.runsAtMs, run.id)) ?? 0
   const isWatched = useLive((s) => s.run === run.id && !s.past)
   const isConnected = useLive((s) => s.connection === 'live')
-  if (!told || !isActive(run)) return <TimeText>{duration(run.duration_s)}</TimeText>
-  if (isActive(told) && isWatched) return <Elapsed sinceS={0} />
-  if (told.ticking && isConnected) return <Ticking fromS={told.duration_s} atMs={toldAtMs} />
-  return <TimeText>{duration(told.duration_s)}</TimeText>
+  if (!latest || !isActive(run)) return <TimeText>{duration(run.duration_s)}</TimeText>
+  if (isActive(latest) && isWatched) return <Elapsed sinceS={0} />
+  if (latest.ticking && isConnected) return <Ticking fromS={latest.duration_s} atMs={receivedAtMs} />
+  return <TimeText>{duration(latest.duration_s)}</TimeText>
 }
 
-/** For runs that are not watched: they are told again only where something changes. */
+/** For runs that are not watched: they come again only where something changes. */
 function Ticking({ fromS, atMs }: { readonly fromS: number; readonly atMs: number }) {
   const [nowMs, setNow] = useState(() => performance.now())
   useEffect(() => {

@@ -29,7 +29,7 @@ export interface LiveState {
   readonly atMs: number
   readonly ticking: boolean
   readonly runs: readonly RunView[]
-  /** When the duration of each run was told, by the page's own steady clock. */
+  /** When the duration of each run was received, by the page's own steady clock. */
   readonly runsAtMs: Dict<number>
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
@@ -114,7 +114,7 @@ function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): Live
     atMs,
     ticking,
     runs,
-    runsAtMs: toldAt(runs, atMs),
+    runsAtMs: receivedAt(runs, atMs),
     nodes,
     log,
     dropped,
@@ -135,7 +135,7 @@ function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState 
     atMs,
     ticking: frame.ticking,
     runs: mergeRuns(state.runs, frame.runs),
-    runsAtMs: frame.runs.length > 0 ? { ...state.runsAtMs, ...toldAt(frame.runs, atMs) } : state.runsAtMs,
+    runsAtMs: frame.runs.length > 0 ? { ...state.runsAtMs, ...receivedAt(frame.runs, atMs) } : state.runsAtMs,
     nodes: Object.keys(frame.nodes).length > 0 ? { ...state.nodes, ...frame.nodes } : state.nodes,
     log: over > 0 ? log.slice(over) : log,
     dropped: state.dropped + frame.dropped + over,
@@ -150,7 +150,7 @@ function unchanged<T>(old: T, fresh: T): T {
   return JSON.stringify(old) === JSON.stringify(fresh) ? old : fresh
 }
 
-function toldAt(runs: readonly RunView[], atMs: number): Dict<number> {
+function receivedAt(runs: readonly RunView[], atMs: number): Dict<number> {
   return Object.fromEntries(runs.map((run) => [run.id, atMs]))
 }
 

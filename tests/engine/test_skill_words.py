@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.skill import Action, Service, Skill
-from engine.skill_titles import ARM_SKILL_TITLES, skill_words
+from engine.skill import ARM_SKILL_TITLES, Action, Service, Skill, skill_words
 from engine.skills import (
     arm_control,
     contact,
