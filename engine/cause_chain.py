@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import traceback
 
-from engine.errors import Cause, FlexcellError
+from engine.errors import Cause, CauseLine, FlexcellError
+from engine.skill import skill_words
 
 
 def cause_of(error: BaseException) -> Cause:
@@ -32,11 +33,23 @@ def describe_cause(cause: Cause) -> str:
 
 
 def link_text(link: Cause) -> str:
-    """Return the text of one link, with the name of a node replaced by its path."""
+    """Return the text of one link: the name of a node replaced by its path, the address of a skill by its words."""
     name = link.where.rpartition("/")[2]
     if name and link.message.startswith((f"{name} ended with ", f"{name} was left for ")):
         return f"{link.where}{link.message[len(name) :]}"
-    return f"{link.where}: {link.message}" if link.where else link.message
+    source = skill_words(link.where) or link.where
+    return f"{source}: {link.message}" if source else link.message
+
+
+def cause_line(link: Cause) -> CauseLine:
+    """Return one link, without the rest of its chain, as logs show it."""
+    return CauseLine(
+        message=link.message,
+        where=link.where,
+        kind=link.kind,
+        compared=link.compared,
+        skill=skill_words(link.where),
+    )
 
 
 def wrap_cause(message: str, because: Cause | None, *, where: str = "", kind: str = "") -> Cause:

@@ -154,6 +154,12 @@ class CauseLink(msgspec.Struct, frozen=True, kw_only=True):
     compared: tuple[MeasuredValue, ...] = ()
 
 
+class CauseLine(CauseLink, frozen=True, kw_only=True):
+    """One link as logs show it; `skill` is the skill at the address `where` in words, empty if that is no address."""
+
+    skill: str = ""
+
+
 class Cause(CauseLink, frozen=True, kw_only=True, omit_defaults=True):
     """One link with the rest of its chain; `because` is the next link towards the root cause.
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import msgspec
 
 from editor_web.past.state_history import RunStateHistory
-from engine.cause_chain import links_from_root
-from engine.errors import Cause, CauseLink, FlexcellError
+from engine.cause_chain import cause_line, links_from_root
+from engine.errors import Cause, CauseLine, FlexcellError
 from engine.event import Event
 from engine.runtime.history import LogLine, NodeStep, log_line
 
@@ -32,7 +32,7 @@ class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     path: str
     text: str
     hint: str
-    links: tuple[CauseLink, ...]
+    links: tuple[CauseLine, ...]
     steps: tuple[LogLine, ...]
     around: tuple[LogLine, ...]
 
@@ -135,9 +135,9 @@ def _around(events: Sequence[Event], steps: Mapping[int, NodeStep], path: str, s
     return tuple(lines[-AROUND:])
 
 
-def _link_and_hint(cause: Cause) -> tuple[CauseLink, str]:
+def _link_and_hint(cause: Cause) -> tuple[CauseLine, str]:
     message, hint = _split_hint(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
-    return CauseLink(message=message, where=cause.where, kind=cause.kind, compared=cause.compared), hint
+    return msgspec.structs.replace(cause_line(cause), message=message), hint
 
 
 def _family(kind: type[FlexcellError]) -> frozenset[str]:

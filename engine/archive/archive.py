@@ -19,6 +19,7 @@ from engine.journal import journal_path, read_events, read_origin
 from engine.library.behavior_graph import new_graph
 from engine.library.behavior_library import BehaviorView
 from engine.recording import RecordedDocuments, load_recording, recorded_behavior
+from engine.runtime.history.run_view import run_duration_s
 from engine.runtime.plan import Catalogue, Plan, new_plan
 
 
@@ -155,7 +156,7 @@ class Archive:
                 if ended is not None and ended.cause is not None and not success
                 else "",
                 started_at_s=description.started_unix_s,
-                duration_s=last.time_s if last is not None else 0.0,
+                duration_s=run_duration_s(last),
                 events=last.seq if last is not None else 0,
             ),
             events=events,

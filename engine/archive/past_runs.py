@@ -10,7 +10,7 @@ from engine.cause_chain import describe_cause
 from engine.errors import JournalError
 from engine.event import RunEnded
 from engine.journal import JournalSnapshot, RunRecord, journal_path, open_snapshot
-from engine.runtime.history.run_view import RunView
+from engine.runtime.history.run_view import RunView, run_duration_s
 
 
 class PastRun(RunView, frozen=True, kw_only=True):
@@ -74,7 +74,7 @@ class PastRuns:
             # A damaged run must not hide the others.
             return _past_run(record, status="errored", cause=error.message)
         if not isinstance(last, RunEnded):
-            return _past_run(record, duration_s=last.time_s if last is not None else 0.0)
+            return _past_run(record, duration_s=run_duration_s(last))
         success = is_success(last, self._success(record.id, record.document))
         return _past_run(
             record,
@@ -82,7 +82,7 @@ class PastRuns:
             outcome=last.outcome,
             success=success,
             cause=describe_cause(last.cause) if last.cause is not None and not success else "",
-            duration_s=last.time_s,
+            duration_s=run_duration_s(last),
         )
 
 

@@ -116,6 +116,11 @@ def is_kind(found: object) -> CellNameKind | None:
     return found if isinstance(found, str) and (found in _KINDS or found in tool_kinds()) else None
 
 
+def all_kinds() -> tuple[CellNameKind, ...]:
+    """Return all kinds of names, those of tools among them."""
+    return (*sorted(_KINDS), *sorted(tool_kinds()))
+
+
 def cell_names(cell: Cell) -> CellNames:
     """Return the names that a cell offers."""
     document = cell.document

@@ -10,6 +10,7 @@ from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.cell_name_checks import CellNameCheck
 from engine.check.cell.entry_references import Entries, add_written_entries, check_entries
+from engine.check.cell.parameter_names import check_declared_entries
 from engine.check.disabled_nodes import check_disabled
 from engine.check.finding import Finding, finding_sort_key, invalid_document_finding, new_finding
 from engine.check.flow.definition_sites import DefinitionSites
@@ -143,6 +144,7 @@ def _check_one(
         *check_loops(subject, read),
         *check_resources(subject),
         *(check_entries(subject, entries) if entries is not None else ()),
+        *(check_declared_entries(subject, entries) if entries is not None else ()),
         *(use.check(subject, resolver) if use is not None else ()),
     ]
     note_settled(subject, findings)

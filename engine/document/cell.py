@@ -60,6 +60,9 @@ class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag=
     world_silence_s: Annotated[
         float, Meta(ge=0.1, le=60.0, description="Seconds without a simulation step until the world is terminated")
     ] = 0.25
+    start_limit_s: Annotated[
+        float, Meta(ge=1.0, le=3600.0, description="Maximum seconds until the process of the world has built it")
+    ] = 180.0
 
 
 OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]

@@ -46,6 +46,8 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
     maximum: float | None = None
     unit: Annotated[str, Meta(description="SI unit, shown after the value")] = ""
     choices: tuple[object, ...] = ()
+    cell_name: Annotated[str, Meta(description="Kind of thing of the cell that a text names: robot, part, camera")] = ""
+    entry: Annotated[str, Meta(description="Kind of the entry that a text names: joints, pose")] = ""
     label: Annotated[str, Meta(description="Label in the form; the name if empty")] = ""
     description: str = ""
 
@@ -58,6 +60,10 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
     def value_type(self) -> object:
         """The Python type of its values."""
         return _KINDS[self.type]
+
+    def naming(self) -> dict[str, object]:
+        """Return what its value names, in the words of the parameters of states; empty if it names nothing."""
+        return {word: kind for word, kind in (("cell_name", self.cell_name), ("entry", self.entry)) if kind}
 
     def problem(self, value: object) -> str | None:
         """Return what is wrong with a value; None if it is valid."""
@@ -96,6 +102,7 @@ class ParameterSpec(StrictModel, frozen=True, kw_only=True):
         schema |= {"maximum": self.maximum} if self.maximum is not None else {}
         schema |= {"enum": list(self.choices)} if self.choices else {}
         schema |= {"default": self.default} if not self.required else {}
+        schema |= self.naming()
         texts = {"title": self.label, "description": self.description, "unit": self.unit}
         return schema | {key: text for key, text in texts.items() if text}
 

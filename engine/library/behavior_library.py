@@ -8,8 +8,16 @@ from pathlib import Path
 
 import msgspec
 
-from engine.check import CellFit, Finding, cell_fit, check_survey, invalid_document_finding, read_beside
-from engine.document import Behavior, Cell, ParameterSpec, load_source, survey_behavior
+from engine.check import (
+    CellFit,
+    Finding,
+    cell_fit,
+    check_survey,
+    invalid_document_finding,
+    parameter_naming,
+    read_beside,
+)
+from engine.document import Behavior, Cell, load_source, survey_behavior
 from engine.errors import ControlError, DocumentError, Position
 from engine.library.behavior_graph import GraphNode, new_graph
 from engine.library.usages import Usages, UsedKind, find_usages
@@ -197,7 +205,7 @@ class Library:
             id=behavior_id,
             name=behavior.name,
             description=behavior.document.description,
-            parameters=tuple(_parameter(name, parameter) for name, parameter in behavior.parameters.items()),
+            parameters=tuple(_parameters(behavior, self.catalogue)),
             findings=tuple(sorted(map(_finding, findings), key=lambda finding: (finding.line, finding.column))),
             graph=new_graph(behavior, self.catalogue),
             view=behavior.document.view,
@@ -225,8 +233,11 @@ def _stamp(file: Path) -> int:
         return 0  # a deleted file is a change too
 
 
-def _parameter(name: str, parameter: ParameterSpec) -> ParameterView:
-    return ParameterView(name=name, schema=parameter.json_schema(), required=parameter.required)
+def _parameters(behavior: Behavior, catalogue: Catalogue) -> Iterator[ParameterView]:
+    naming = parameter_naming(behavior, catalogue)
+    for name, parameter in behavior.parameters.items():
+        schema = {**parameter.json_schema(), **naming.get(name, {})}
+        yield ParameterView(name=name, schema=schema, required=parameter.required)
 
 
 def _finding(finding: Finding) -> FindingView:

@@ -60,6 +60,8 @@ class PreparedRun:
 
     run: Run
     faults: FaultPort | None
+    started_unix_s: float
+    """The time of its start; of a resumed run that of its first start."""
     end_recording: Callable[[], None] = lambda: None
 
     async def execute(self) -> RunResult:
@@ -146,7 +148,7 @@ class CellRunner:
             ControlError: events are not kept here; its previous process has continued the run, which can no longer
                 be resumed like this.
         """
-        started_unix_s = time.time()
+        resumed_unix_s = time.time()
         run_id, place = resumption.found.id, resumption.found.place
         if not self._keeps_events:
             raise ControlError("a run can only be resumed in its journal", where=run_id, hint="give --journal DIR")
@@ -169,7 +171,8 @@ class CellRunner:
             world=self.cell.snapshot if self.cell.has_world else None,
         )
         request = RunRequest(plan=now.plan, inputs=origin.inputs, supervision=supervision, documents=documents)
-        return self._prepared(run, None, request, started_unix_s)
+        prepared = self._prepared(run, None, request, resumed_unix_s)
+        return replace(prepared, started_unix_s=now.found.record.started_unix_s)
 
     @property
     def _keeps_events(self) -> bool:
@@ -186,14 +189,15 @@ class CellRunner:
 
     def _prepared(self, run: Run, faults: FaultPort | None, request: RunRequest, started_unix_s: float) -> PreparedRun:
         if self._recorder is None or request.documents is None:
-            return PreparedRun(run=run, faults=faults)
+            return PreparedRun(run=run, faults=faults, started_unix_s=started_unix_s)
         start = RunStartRecord(
             documents=request.documents,
             inputs=request.inputs,
             supervision=request.supervision,
             started_unix_s=started_unix_s,
         )
-        return PreparedRun(run=run, faults=faults, end_recording=self._recorder.record(run, self.cell.bus, start))
+        end_recording = self._recorder.record(run, self.cell.bus, start)
+        return PreparedRun(run=run, faults=faults, started_unix_s=started_unix_s, end_recording=end_recording)
 
     def _origin(
         self, request: RunRequest, parameters: dict[str, object], inputs: dict[str, object]

@@ -127,11 +127,11 @@ class Session:
 
     def runs(self) -> tuple[RunView, ...]:
         """Return the runs of this session, newest first."""
-        return tuple(started.view(self.cell.bus.clock.now_s()) for started in reversed(self._runs.values()))
+        return tuple(started.view() for started in reversed(self._runs.values()))
 
     def run(self, run_id: str) -> RunView:
         """Return one run; raises FlexcellError if there is no such run."""
-        return self._known(run_id).view(self.cell.bus.clock.now_s())
+        return self._known(run_id).view()
 
     async def start(
         self,
@@ -393,7 +393,7 @@ class Session:
 
     def _add(self, behavior_id: str, prepared: PreparedRun, *, events: Iterable[Event] = ()) -> str:
         run = prepared.run
-        started = SessionRun(behavior_id, prepared, self.cell.bus.clock.now_s(), events=events)
+        started = SessionRun(behavior_id, prepared, events=events)
         self._runs[run.id] = started
         run.watch(lambda event: self._publish(started.live, event))
         started.task = asyncio.create_task(started.execute(), name=f"session run {run.id}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Iterable
 
 import msgspec
@@ -13,7 +12,7 @@ from engine.event import Event
 from engine.journal import RunRecord
 from engine.project.cell_runner import PreparedRun
 from engine.runtime.history.live_run import LiveRun
-from engine.runtime.history.run_view import RunView
+from engine.runtime.history.run_view import RunView, run_duration_s
 from engine.runtime.run_result import RunResult
 
 
@@ -32,18 +31,13 @@ class SessionRun:
     Args:
         behavior_id: The behavior that it executes.
         prepared: The run.
-        started_s: The time of the cell's clock at its start.
         events: The events before this session, if the run was resumed.
     """
 
-    def __init__(
-        self, behavior_id: str, prepared: PreparedRun, started_s: float, *, events: Iterable[Event] = ()
-    ) -> None:
+    def __init__(self, behavior_id: str, prepared: PreparedRun, *, events: Iterable[Event] = ()) -> None:
         self.behavior_id = behavior_id
         self.run = prepared.run
         self._prepared = prepared
-        self.started_s = started_s
-        self.started_at_s = time.time()
         self.live = LiveRun(prepared.run.id, events)
         self.stopping = False
         self.result: RunResult | None = None
@@ -59,12 +53,12 @@ class SessionRun:
             self.stopping = True
             self.run.stop(reason)
 
-    def view(self, now_s: float) -> RunView:
-        """Return the status of the run at this time of the cell's clock."""
+    def view(self) -> RunView:
+        """Return the status of the run now."""
         result = self.result
         control = self.run.control.view() if result is None and not self.run.ended else None
-        stands = control is not None and control.time_stands
-        run_s = self.live.state.time_s if stands else now_s - self.started_s
+        # The time of a paused run stands.
+        advances = control is not None and not control.time_stands
         return RunView(
             id=self.run.id,
             behavior=self.behavior_id,
@@ -72,9 +66,10 @@ class SessionRun:
             outcome=result.outcome if result else None,
             success=result.success if result else False,
             cause=describe_cause(result.cause) if result and result.cause and not result.success else "",
-            started_at_s=self.started_at_s,
-            duration_s=result.duration_s if result else run_s,
+            started_at_s=self._prepared.started_unix_s,
+            duration_s=self.run.recorder.now_s() if advances else run_duration_s(self.live.last),
             waits=control.waits if control is not None else "",
+            ticking=advances and self.live.state.real_time,
         )
 
 

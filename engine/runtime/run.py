@@ -17,6 +17,7 @@ from engine.preemption import preempt_finally
 from engine.runtime.control import Control, Gate
 from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.history.hot_change import NO_SNAPSHOT, ChangeReport, VersionSnapshot
+from engine.runtime.history.run_view import run_duration_s
 from engine.runtime.hot_change_executor import HotChangeExecutor
 from engine.runtime.nodes.diagnosis import explain_exit
 from engine.runtime.nodes.execution import Execution
@@ -231,7 +232,6 @@ class Run:
 
         Cancelling this call stops the run; CancelledError propagates after its clean-up.
         """
-        started_s = self._execution.clock.now_s()
         self._begin()
         before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
         scope = Scope("", {**before, **self._inputs}, self._parameters)
@@ -255,7 +255,7 @@ class Run:
             outcome=end.outcome,
             success=success and end.status == "finished",
             cause=end.cause,
-            duration_s=round(self._execution.clock.now_s() - started_s, 6),
+            duration_s=run_duration_s(end),
             userdata=scope.own_values(),
             stood_in_for=self.plan.stood_in_for,
             abandoned=tuple(self._execution.abandoned),

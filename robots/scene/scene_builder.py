@@ -34,6 +34,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         gravity=world.gravity,
         engine_silence_s=world.engine_silence_s,
         world_silence_s=world.world_silence_s,
+        start_limit_s=world.start_limit_s,
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),

@@ -111,12 +111,13 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     """The complete description of a simulated world; equal scenes give equal worlds, bit for bit.
 
     In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
-    other side reacts, see `robots.port.control_process`.
+    other side reacts, see `robots.port.control_process`; `start_limit_s` limits how long its process builds the world.
     """
 
     step_s: float = 0.001
     engine_silence_s: float = ENGINE_SILENCE_S
     world_silence_s: float = CONTROL_SILENCE_S
+    start_limit_s: float = 180.0
     gravity: bool = True
     arms: tuple[ArmPlacement, ...] = ()
     fixtures: tuple[FixtureBody, ...] = ()

@@ -13,7 +13,7 @@ LEFT = Cause(message="pick was left for rescue", where="root/pick", because=ENDE
 
 def test_a_chain_begins_with_what_was_measured() -> None:
     assert describe_cause(LEFT) == (
-        "right/gripper/grasp: fingers 0.0 mm apart, 30.0 mm expected, "
+        "right gripper: grasp: fingers 0.0 mm apart, 30.0 mm expected, "
         "so root/pick/grasp: right did not grasp the part, so root/pick/grasp ended with missed, "
         "so root/pick was left for rescue"
     )

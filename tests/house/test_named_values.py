@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import cast
 
 import pytest
 
 from engine.cell.cell_names import is_kind
+from engine.document import load_source
 from engine.document.signature import Schema, read_signature
 from engine.registry import load_states
 
+BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 NAMES = frozenset(
     ("cell_name", "new_cell_name", "cell_label", "entry", "entry_of", "new_entry", "new_entry_of", "entry_kind")
 )
@@ -87,3 +90,20 @@ def test_each_declared_kind_is_one_that_a_cell_lists() -> None:
             due += cast("list[object]", here)
     assert {"robot", "part", "frame"} <= kinds
     assert [kind for kind in kinds if is_kind(kind) is None] == []
+
+
+def test_each_text_parameter_of_a_shipped_behavior_has_choices_or_names_something() -> None:
+    found = [
+        f"{file.stem}.{name}"
+        for file in sorted(BEHAVIORS.rglob("*.yaml"))
+        if file.parent.name not in ("cells", "entries")
+        for name, spec in _declared(file).items()
+        if spec.get("type") == "string" and not NAMES & spec.keys() and "choices" not in spec
+    ]
+    assert found == []
+    assert _declared(BEHAVIORS / "pick_and_place" / "confirmed_move.yaml")["target"]["entry"] == "joints"
+
+
+def _declared(file: Path) -> dict[str, dict[str, object]]:
+    data = cast("dict[str, object]", load_source(file).data)
+    return cast("dict[str, dict[str, object]]", data.get("parameters", {}))

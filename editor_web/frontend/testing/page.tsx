@@ -121,6 +121,7 @@ export function run(told: Partial<RunView> = {}): RunView {
     started_at_s: 1000,
     duration_s: 0,
     waits: '',
+    ticking: false,
     ...told,
   }
 }

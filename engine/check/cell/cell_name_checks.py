@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from engine.cell.cell_names import CellNameKind, CellNames, is_kind
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.cell.parameter_names import check_declared_names
 from engine.check.finding import Finding
 from engine.check.flow.key_reads import only_name
 from engine.check.flow.type_inference import TypeInference
@@ -72,7 +73,12 @@ class CellNameCheck:
         top = subject is self.subjects[0]
         known = {**default_values(subject), **self.parameters} if top else {}
         yield from check_joint_targets(subject, self.names.joints, known)
+        if top:
+            yield from check_declared_names(subject, self.names, self.parameters)
         for use in self._uses(subject, known):
+            spec = subject.behavior.parameters.get(use.key) if use.key is not None else None
+            if top and spec is not None and spec.cell_name == use.kind:
+                continue  # found where it is declared
             if not isinstance(use.value, UnknownValue):
                 yield from self._compared(subject, use, use.value, self._origin(subject, use))
             # The initial userdata of a referred behavior depends on each reference.
@@ -152,7 +158,9 @@ class CellNameCheck:
     def _parameters(self, subject: AnalyzedBehavior) -> Mapping[str, _Due]:
         """Return the kinds of names that a behavior expects for its parameters."""
         if id(subject) not in self._due:
-            found: dict[str, _Due] = {}
+            specs = subject.behavior.parameters.items()
+            kinds = {name: is_kind(spec.cell_name) for name, spec in specs}
+            found = {name: _Due(kind=kind, besides=()) for name, kind in kinds.items() if kind is not None}
             for use in self._uses(subject, {}):
                 if use.key in subject.behavior.parameters and use.owner is None:
                     found.setdefault(use.key, _Due(kind=use.kind, besides=use.besides))

@@ -58,6 +58,10 @@ def check_entries(subject: AnalyzedBehavior, entries: Entries) -> Iterator[Findi
             if known and isinstance(value, dict | str) and signature is not None and name in signature.parameters:
                 # A field `entry` without a declared kind may name an entry of any kind.
                 kinds = {("entry",): "", **entry_fields(signature.parameters[name].type)}
+                specs = [subject.behavior.parameters[key] for key in found.names & subject.behavior.parameters.keys()]
+                # Found where the parameter is declared.
+                reported = {(spec.entry, spec.default) for spec in specs if spec.entry}
+                kinds = {steps: kind for steps, kind in kinds.items() if (kind, _inside(value, steps)) not in reported}
                 yield from _check_value(subject, placed, name, cast("object", value), kinds, entries)
 
 

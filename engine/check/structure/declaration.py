@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+from engine.cell.cell_names import all_kinds, is_kind
 from engine.check.analyzed_behavior import AnalyzedBehavior
 from engine.check.finding import Finding, new_finding
 from engine.document.parameter_spec import ParameterSpec
@@ -58,6 +59,18 @@ def _check_parameter(subject: AnalyzedBehavior, name: str, parameter: ParameterS
     if low is not None and high is not None and low > high:
         message = f"parameter `{name}`: the minimum {low:g} is above the maximum {high:g}"
         yield found("bad-declaration", message, "minimum", hint="swap them")
+    naming = parameter.naming()
+    if naming and parameter.type != "string":
+        hint = "only a string names something"
+        message = f"parameter `{name}` is a {parameter.type} and names something"
+        yield found("bad-declaration", message, next(iter(naming)), hint=hint)
+    if len(naming) > 1:
+        message = f"parameter `{name}` names a {parameter.cell_name} and an entry"
+        yield found("bad-declaration", message, "entry", hint="remove one of them")
+    if parameter.cell_name and is_kind(parameter.cell_name) is None:
+        message = f"parameter `{name}`: `{parameter.cell_name}` is no kind of thing of a cell"
+        hint = did_you_mean(parameter.cell_name, all_kinds())
+        yield found("bad-declaration", message, "cell_name", hint=hint)
     for index, choice in enumerate(parameter.choices):
         problem = parameter.problem(choice)
         if problem:

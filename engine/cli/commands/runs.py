@@ -21,12 +21,13 @@ from engine.document import load_behavior
 from engine.errors import Cause, DocumentError, JournalError
 from engine.event import Event, OperatorChanged, OperatorCommanded, RunEnded, StopRequested
 from engine.host.state_folder_names import STATE_FOLDER
-from engine.journal import RunRecord, encode_event, list_runs
+from engine.journal import JournalSnapshot, RunRecord, encode_event, journal_path, open_snapshot
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.runtime.history.event_texts import event_text
 from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
+from engine.runtime.history.run_view import run_duration_s
 from engine.runtime.plan import new_plan
 from engine.suggestions import did_you_mean
 
@@ -52,6 +53,8 @@ class RunListEntry(msgspec.Struct, frozen=True, kw_only=True):
     behavior: str
     status: str
     started: str
+    duration_s: float | None
+    """The time of its last event on its clock; null where the run is damaged."""
     events: int
     engines: int
     verified: bool
@@ -78,16 +81,19 @@ def runs(context: typer.Context, journal: JournalPlace = STATE_FOLDER, json: AsJ
     """List the runs, oldest first; a run whose process died is listed as interrupted."""
     if context.invoked_subcommand is not None:
         return
-    lines = [_line(record) for record in list_runs(journal)]
+    with open_snapshot(journal_path(journal)) as snapshot:
+        lines = [_line(record, _duration_s(snapshot, record.id)) for record in snapshot.runs()]
     if json:
         sys.stdout.write(msgspec.json.encode(lines).decode() + "\n")
         return
     # Users copy the id: it is never truncated.
     widest = max((len(line.id) for line in lines), default=0)
     run_column = Column("run", min_width=widest, no_wrap=True)
-    table = Table(run_column, "behavior", "status", "started (UTC)", "events", box=None)
+    table = Table(
+        run_column, "behavior", "status", "started (UTC)", Column("duration", justify="right"), "events", box=None
+    )
     for line in lines:
-        table.add_row(line.id, line.behavior, line.status, line.started, str(line.events))
+        table.add_row(line.id, line.behavior, line.status, line.started, _duration_text(line), str(line.events))
     # In a pipe no text is wrapped or truncated: the reader searches for whole words.
     Console(width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
     for line in lines:
@@ -174,12 +180,25 @@ def trend(
         print_trend(found)
 
 
-def _line(record: RunRecord) -> RunListEntry:
+def _duration_s(snapshot: JournalSnapshot, run_id: str) -> float | None:
+    try:
+        return run_duration_s(snapshot.last_event(run_id))
+    except JournalError:
+        # A damaged run must not hide the others.
+        return None
+
+
+def _duration_text(line: RunListEntry) -> str:
+    return "" if line.duration_s is None else f"{line.duration_s:.2f} s"
+
+
+def _line(record: RunRecord, duration_s: float | None) -> RunListEntry:
     return RunListEntry(
         id=record.id,
         behavior=record.behavior,
         status="damaged" if record.damage else "interrupted" if record.interrupted else record.status,
         started=datetime.fromtimestamp(record.started_unix_s, UTC).strftime("%Y-%m-%d %H:%M:%S"),
+        duration_s=duration_s,
         events=record.last_seq,
         engines=record.epoch,
         verified=record.verified,
@@ -188,7 +207,7 @@ def _line(record: RunRecord) -> RunListEntry:
 
 
 def _summary(found: RecordedRun) -> RunSummary:
-    line = _line(found.record)
+    line = _line(found.record, run_duration_s(found.events[-1] if found.events else None))
     history = _history(found)
     end = _end(found)
     return RunSummary(
@@ -233,7 +252,7 @@ def _print(summary: RunSummary, end: RunEnded | None) -> None:
     ended = f" with {summary.outcome}" if summary.outcome else ""
     engines = f", {summary.engines} engines" if summary.engines > 1 else ""
     console.print(f"{summary.id}: {summary.behavior}, {summary.status}{ended}")
-    console.print(f"started {summary.started} UTC, {summary.events} events{engines}")
+    console.print(f"started {summary.started} UTC, {_duration_text(summary)}, {summary.events} events{engines}")
     if not summary.verified:
         console.print("unverified: an older version, which wrote no checksums, wrote part of this run")
     if summary.world_at is not None:

@@ -16,6 +16,7 @@ from engine.errors import Cause
 from engine.event import Event
 from engine.journal import encode_event_log
 from engine.runtime.run_result import RunResult
+from engine.skill import skill_words
 
 
 def report_run(
@@ -71,9 +72,13 @@ def print_result(result: RunResult) -> None:
 
 
 def print_cause(cause: Cause | None, console: Console) -> None:
-    """Print a cause chain, root cause first: one line per link and per node that it passed through."""
+    """Print a cause chain, root cause first: one line per link and per node that it passed through.
+
+    The address of a skill, which the text of a link has in words, follows in brackets.
+    """
     for depth, link in enumerate(links_from_root(cause)):
         begin = f"{'  ' * depth}so " if depth else ""
-        console.print(f"{begin}{link_text(link)}", markup=False, highlight=False, soft_wrap=True)
+        address = f" [{link.where}]" if skill_words(link.where) else ""
+        console.print(f"{begin}{link_text(link)}{address}", markup=False, highlight=False, soft_wrap=True)
         for node in link.nodes:
             console.print(f"{'  ' * depth}     in {node}", markup=False, highlight=False, soft_wrap=True)

@@ -6,8 +6,8 @@ from typing import get_args
 
 import msgspec
 
-from engine.cause_chain import links_from_root
-from engine.errors import CauseLink
+from engine.cause_chain import cause_line, links_from_root
+from engine.errors import CauseLine
 from engine.event import AnyEvent, Event
 from engine.runtime.history.event_texts import event_text
 
@@ -23,7 +23,7 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     level: str
     path: str
     text: str
-    causes: tuple[CauseLink, ...] = ()
+    causes: tuple[CauseLine, ...] = ()
 
 
 def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
@@ -36,8 +36,5 @@ def log_line(event: Event, *, duration_s: float | None = None) -> LogLine:
         level=shown.level,
         path=shown.path,
         text=shown.text,
-        causes=tuple(
-            CauseLink(message=link.message, where=link.where, kind=link.kind, compared=link.compared)
-            for link in links_from_root(shown.cause)
-        ),
+        causes=tuple(map(cause_line, links_from_root(shown.cause))),
     )

@@ -44,6 +44,11 @@ class LiveRun:
         """The state of the run."""
         return self._reducer.state
 
+    @property
+    def last(self) -> Event | None:
+        """Its last event so far."""
+        return self.events[-1] if self.events else None
+
     def apply(self, event: Event) -> LiveRunChange | None:
         """Apply the next event; None if it was applied before."""
         change = self._reducer.apply(event)

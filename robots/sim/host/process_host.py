@@ -26,7 +26,6 @@ from robots.sim.loop.snapshot import CellSummary, SimSnapshot, SnapshotLayout
 _START = "from robots.sim.host.process_main import main; main()"
 _WHAT = "the world's process"
 # On a loaded machine that compiles the controllers for the first time, one arm takes half a minute.
-_START_S = 180.0
 _END_S = 6.0
 # A process that is already shutting down needs no more to exit.
 _EXIT_S = 0.2
@@ -153,11 +152,16 @@ class ProcessHost:
 
     async def _built(self, worker: WorkerProcess[ToWorld, FromWorld]) -> WorldReady:
         ready = worker.ask(BuildWorld(scene=self._scene)).answer
+        limit_s = self._scene.start_limit_s
         try:
-            async with asyncio.timeout(_START_S):
+            async with asyncio.timeout(limit_s):
                 answer = await asyncio.shield(ready)
         except TimeoutError as error:
-            raise RobotError(f"the world's process did not answer within {_START_S:g} s") from error
+            raise RobotError(
+                f"{_WHAT} was started and had not built the world after {limit_s:g} s",
+                hint="the machine may be overloaded: end other programs and start again, or allow more time in the"
+                f" cell, `world: {{kind: mujoco, start_limit_s: {2 * limit_s:g}}}`",
+            ) from error
         assert isinstance(answer, WorldReady)
         return answer
 

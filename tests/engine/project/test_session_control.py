@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from engine.archive import Archive, RunTrends, compare_runs
 from engine.cell.open_cell import OpenCell
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.event import Event, GateReached, NodeEntered, OperatorChanged, OperatorCommanded, UserdataWritten
@@ -219,7 +220,8 @@ async def test_a_run_whose_process_was_killed_is_resumed_in_a_session(project: P
         known = until(process, project, entered("root/second"))
     run = run_id_in(project)
     async with opened(project, real_states=True) as session:
-        assert [record.id for record in session.interrupted()] == [run]
+        (interrupted,) = session.interrupted()
+        assert interrupted.id == run
         with pytest.raises(ResumeDecisionRequired):
             await session.resume(run)
         assert await session.resume(run, answers={"root/second": "done"}) == run
@@ -231,6 +233,14 @@ async def test_a_run_whose_process_was_killed_is_resumed_in_a_session(project: P
         assert session.interrupted() == ()
         with pytest.raises(ControlError, match="this run is over"):
             await session.resume(run)
+        # It has one start and one duration, wherever it is shown.
+        archive = Archive(project, load_states(), project / ".flexcell")
+        past, opened_again = archive.runs()[0], archive.run(run)
+        trend = RunTrends(archive).of("asks", last=1)
+        shown = (view, past, opened_again.summary, compare_runs(opened_again, opened_again).left, *trend.runs)
+        assert [each.duration_s for each in shown] == [events[-1].time_s] * 5
+        assert [each.started_at_s for each in shown] == [interrupted.started_unix_s] * 5
+        assert events[-1].time_s > known[-1].time_s
     assert not [event for event in known if isinstance(event, OperatorCommanded)]
 
 

@@ -381,12 +381,13 @@ export interface CauseGroup {
   readonly examples: readonly number[]
 }
 
-/** One link of the cause chain of a failure; those of a whole chain are in order, root cause first. */
-export interface CauseLink {
+/** One link as logs show it; `skill` is the skill at the address `where` in words, empty if that is no address. */
+export interface CauseLine {
   readonly message: string
   readonly where: string
   readonly kind: string
   readonly compared: readonly MeasuredValue[]
+  readonly skill: string
 }
 
 /** Whether every device of the cell is connected; the latest value of `cell/connection`. `reason` names the lost devices with the causes; for a reconnected cell, the differences from before. */
@@ -1372,7 +1373,7 @@ export interface LogLine {
   readonly level: string
   readonly path: string
   readonly text: string
-  readonly causes: readonly CauseLink[]
+  readonly causes: readonly CauseLine[]
 }
 
 /** A single-use login token, for `/login?t=<token>`. */
@@ -1786,6 +1787,7 @@ export interface PastRun {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
   readonly document: string
   readonly events: number
 }
@@ -1801,6 +1803,7 @@ export interface PastRunBody {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
   readonly document: string
   readonly events: number
   readonly failed: boolean
@@ -2159,7 +2162,7 @@ export interface RunFailure {
   readonly path: string
   readonly text: string
   readonly hint: string
-  readonly links: readonly CauseLink[]
+  readonly links: readonly CauseLine[]
   readonly steps: readonly LogLine[]
   readonly around: readonly LogLine[]
 }
@@ -2220,7 +2223,7 @@ export interface RunTrend {
   readonly nodes: readonly NodeTrend[]
 }
 
-/** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run. `waits` is asks, paused or locked while it waits for a person. */
+/** One run, active or ended; `status` is running, stopping, finished, stopped, errored or interrupted. `behavior` is the id of its document, of a past run the name of the behavior. `duration_s` is on the clock of the run, see `run_duration_s`; of an active run it is the time so far, which advances with wall time while `ticking`. `waits` is asks, paused or locked while it waits for a person. */
 export interface RunView {
   readonly id: string
   readonly behavior: string
@@ -2231,6 +2234,7 @@ export interface RunView {
   readonly started_at_s: number
   readonly duration_s: number
   readonly waits: string
+  readonly ticking: boolean
 }
 
 /** Rows of the chosen fields, in their order: time on the server's clock, and a value each (null where none). `dropped` is the number of earlier rows that were dropped because the page was too slow. */

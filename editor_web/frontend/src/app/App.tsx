@@ -16,6 +16,7 @@ import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
 import { WhileLoading, lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
+import { NoticePlace } from '../components/NoticePlace'
 import { SIDE_ITEM, SideLink } from '../components/SideLink'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/runState'
@@ -153,10 +154,12 @@ export function App() {
         </div>
       </AppShell.Navbar>
       <AppShell.Main id="main" display="flex" h="100dvh" mih={0} style={{ flexDirection: 'column' }}>
-        <ConnectionLost />
-        <StoppedBanner />
-        <LogIn />
-        <LostCell />
+        <NoticePlace>
+          <ConnectionLost />
+          <StoppedBanner />
+          <LogIn />
+          <LostCell />
+        </NoticePlace>
         <Loading name="This page" of={JSON.stringify(route)}>
           <RoutedPage route={route} shown={shown} session={session} isNarrow={isNarrow ?? false} onOpen={open} />
         </Loading>

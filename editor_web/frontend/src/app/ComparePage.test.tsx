@@ -21,6 +21,7 @@ function run(id: string, told: Partial<PastRun> = {}): PastRun {
     started_at_s: 1000,
     duration_s: 4,
     waits: '',
+    ticking: false,
     events: 9,
     ...told,
   }

@@ -13,7 +13,8 @@ import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import { nameOf, RunTime } from '../features/runs/RunList'
+import { RunTime } from '../components/RunTime'
+import { nameOf } from '../features/runs/RunList'
 import { TourInvitation } from '../features/tour/TourInvitation'
 import { InterruptedHere } from './InterruptedHere'
 import classes from './pages.module.css'
@@ -110,9 +111,12 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
 
 function CellFoot() {
   return (
-    <>
-      <BlockedPaths />
+    <Box pos="relative">
+      {/* They lie over the view above: it keeps its height, and the arms their place. */}
+      <Box pos="absolute" bottom="100%" left={0} right={0} bg="var(--surface)" style={{ zIndex: 1 }}>
+        <BlockedPaths />
+      </Box>
       <RobotStrip />
-    </>
+    </Box>
   )
 }

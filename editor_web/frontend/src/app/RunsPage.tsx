@@ -21,6 +21,7 @@ import { nameOf } from '../features/runs/RunList'
 import { InterruptedHere } from './InterruptedHere'
 import { compareHref, sideBySideHref, runHref } from './route'
 import { useBehavior } from './useBehavior'
+import classes from './pages.module.css'
 
 /** So many of those that are over are listed. */
 const ENDED = 8
@@ -67,7 +68,9 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
           onPress={() => endedPair && onOpen(compareHref(...endedPair))}
         />
       </PageHead>
-      <RefusalLine />
+      <div className={classes.refusal}>
+        <RefusalLine />
+      </div>
       <Box flex={1} mih={0} bg="var(--ground)" style={{ overflow: 'auto' }}>
         <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
         {active.length === 0 ? (

@@ -25,6 +25,7 @@ import { nameOf } from '../features/runs/RunList'
 import { Breadcrumb } from './Breadcrumb'
 import { sideBySideHref, runHref } from './route'
 import { useBehavior } from './useBehavior'
+import classes from './pages.module.css'
 
 export interface SideBySidePageProps {
   readonly left: string
@@ -47,7 +48,9 @@ export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePage
   return (
     <Flex direction="column" flex={1} mih={0}>
       <VisuallyHidden component="h1">Two runs side by side</VisuallyHidden>
-      <RefusalLine />
+      <div className={classes.refusal}>
+        <RefusalLine />
+      </div>
       {isNarrow ? (
         <Box flex={1} mih={0} style={{ overflow: 'auto' }}>
           <Box h="88dvh">{column(left, 'left', right)}</Box>

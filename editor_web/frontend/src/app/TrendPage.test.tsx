@@ -17,6 +17,7 @@ function run(id: string, started_at_s: number, told: Partial<PastRun> = {}): Pas
     started_at_s,
     duration_s: 4,
     waits: '',
+    ticking: false,
     events: 9,
     ...told,
   }

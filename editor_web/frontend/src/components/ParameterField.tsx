@@ -1,15 +1,17 @@
 /** One parameter as the input that fits its kind. */
-import { NumberInput, Select, Switch, Text, Textarea, TextInput } from '@mantine/core'
+import { Autocomplete, NumberInput, Select, Switch, Text, Textarea, TextInput } from '@mantine/core'
 import { rangeText, type Field } from '../document/schema'
 
 export interface ParameterFieldProps {
   readonly field: Field
   readonly value: unknown
   readonly problem: string | undefined
+  /** Names to choose from; another one can be typed. */
+  readonly offers?: readonly string[] | undefined
   readonly onChange: (value: unknown) => void
 }
 
-export function ParameterField({ field, value, problem, onChange }: ParameterFieldProps) {
+export function ParameterField({ field, value, problem, offers, onChange }: ParameterFieldProps) {
   const range = rangeText(field)
   const common = {
     size: 'sm' as const,
@@ -83,8 +85,26 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
         />
       )
     case 'text':
+      if (offers)
+        return (
+          <Autocomplete
+            {...common}
+            data={[...offers]}
+            value={String(value)}
+            onChange={onChange}
+            // All of them are shown beside one that is chosen.
+            filter={({ options, search }) => (offers.includes(search) ? options : options.filter((each) => fits(each, search)))}
+            limit={MOST}
+          />
+        )
       return <TextInput {...common} value={String(value)} onChange={(event) => onChange(event.currentTarget.value)} />
   }
+}
+
+const MOST = 100
+
+function fits(option: object, search: string): boolean {
+  return 'label' in option && String(option.label).toLowerCase().includes(search.trim().toLowerCase())
 }
 
 /** A step that suits the range: a twentieth of it, rounded to one digit. */

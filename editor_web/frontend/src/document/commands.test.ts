@@ -13,6 +13,7 @@ const run: RunView = {
   started_at_s: 0,
   duration_s: 0,
   waits: '',
+  ticking: false,
 }
 const control: ControlView = {
   paused: false,

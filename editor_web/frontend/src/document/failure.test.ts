@@ -14,6 +14,7 @@ const RUN: RunView = {
   started_at_s: 0,
   duration_s: 3,
   waits: '',
+  ticking: false,
 }
 const FAILURE: RunFailure = {
   seq: 9,
@@ -27,6 +28,7 @@ const FAILURE: RunFailure = {
       message: 'the fingers of the left one ended beside hca_north',
       where: 'right/gripper/grasp',
       kind: 'GraspFailed',
+      skill: 'right gripper: grasp',
       compared: [OPENING],
     },
   ],
@@ -90,7 +92,7 @@ it('writes a report with everything that a colleague needs', () => {
     'Page: http://h/runs/r2',
     '',
     'Why, innermost cause first:',
-    '- the fingers of the left one ended beside hca_north (GraspFailed, right/gripper/grasp)',
+    '- right gripper: grasp: the fingers of the left one ended beside hca_north (GraspFailed, right/gripper/grasp)',
     '  opening: measured 1.2 mm, expected 20 to 40 mm',
     '',
     'What happened there:',

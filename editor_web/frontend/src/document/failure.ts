@@ -1,5 +1,5 @@
 /** A failure in words: what was measured against what was expected, what differs from the last good run, and a report of all. Pure. */
-import type { MeasuredValue, NodeDifference, RunComparison, RunFailure, RunView } from '../api/types'
+import type { CauseLine, MeasuredValue, NodeDifference, RunComparison, RunFailure, RunView } from '../api/types'
 import { runWords } from './runState'
 import { duration, wallTime } from './time'
 import { firstOfPath } from './path'
@@ -57,6 +57,11 @@ function durationWords({ path, duration_left_s: before, duration_right_s: now }:
   return `${path}: ${duration(before)} before, ${duration(now)} now`
 }
 
+/** `left arm: line to a pose: joint 4 would exceed its limit`: who says it, where that is a skill of a device, and what. */
+export function causeWords({ skill, message }: CauseLine): string {
+  return skill ? `${skill}: ${message}` : message
+}
+
 const WORD = /[\p{L}\p{N}_./-]+/gu
 
 /** Names that may be those of a part, frame or arm in the cell: first what the causes say, then the arms that were asked. */
@@ -83,7 +88,7 @@ export function reportOf(run: RunView, failure: RunFailure, comparison: RunCompa
     `Page: ${address}`,
   ]
   const why = failure.links.flatMap((link) => [
-    `- ${link.message}${source(link.where, link.kind)}`,
+    `- ${causeWords(link)}${source(link.where, link.kind)}`,
     ...link.compared.map((each) => `  ${each.quantity}: measured ${measuredWords(each)}, expected ${expectedWords(each)}`),
   ])
   const around = failure.around.map((line) => `- ${line.time_s.toFixed(2)} s ${line.text}`)

@@ -25,6 +25,7 @@ const run = (id: string, started_at_s: number, status = 'running'): RunView => (
   started_at_s,
   duration_s: 0,
   waits: '',
+  ticking: false,
 })
 const snapshot = (change: Partial<LiveSnapshot> = {}): LiveSnapshot => ({
   k: 'snapshot',

@@ -29,6 +29,8 @@ export interface LiveState {
   readonly atMs: number
   readonly ticking: boolean
   readonly runs: readonly RunView[]
+  /** When the duration of each run was received, by the page's own steady clock. */
+  readonly runsAtMs: Dict<number>
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
@@ -63,6 +65,7 @@ export const EMPTY: LiveState = {
   atMs: 0,
   ticking: false,
   runs: [],
+  runsAtMs: {},
   nodes: {},
   log: [],
   dropped: 0,
@@ -116,6 +119,7 @@ function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): Live
     atMs,
     ticking,
     runs,
+    runsAtMs: receivedAt(runs, atMs),
     nodes,
     log,
     dropped,
@@ -136,6 +140,7 @@ function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState 
     atMs,
     ticking: frame.ticking,
     runs: mergeRuns(state.runs, frame.runs),
+    runsAtMs: frame.runs.length > 0 ? { ...state.runsAtMs, ...receivedAt(frame.runs, atMs) } : state.runsAtMs,
     nodes: Object.keys(frame.nodes).length > 0 ? { ...state.nodes, ...frame.nodes } : state.nodes,
     log: over > 0 ? log.slice(over) : log,
     dropped: state.dropped + frame.dropped + over,
@@ -148,6 +153,10 @@ function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState 
 /** The old object where the new one says the same, so that nothing is drawn again. */
 function unchanged<T>(old: T, fresh: T): T {
   return JSON.stringify(old) === JSON.stringify(fresh) ? old : fresh
+}
+
+function receivedAt(runs: readonly RunView[], atMs: number): Dict<number> {
+  return Object.fromEntries(runs.map((run) => [run.id, atMs]))
 }
 
 function mergeRuns(runs: readonly RunView[], changed: readonly RunView[]): readonly RunView[] {

@@ -14,6 +14,7 @@ function run(told: Partial<RunView> = {}): RunView {
     started_at_s: 0,
     duration_s: 0,
     waits: '',
+    ticking: false,
     ...told,
   }
 }

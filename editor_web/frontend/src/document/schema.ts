@@ -1,6 +1,6 @@
 /** From a parameter's JSON Schema to a field of the form: kind, label, range, checks. Pure. */
 import { lookup, type Dict } from './dict'
-import type { ParameterView } from '../api/types'
+import type { CatalogueBody, ParameterView } from '../api/types'
 
 export type FieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'json'
 
@@ -14,6 +14,11 @@ export interface Field {
   readonly minimum: number | undefined
   readonly maximum: number | undefined
   readonly choices: readonly string[]
+  /** Kind of thing of the cell that it names, or of an entry of the store; empty for none. */
+  readonly nameKind: string
+  readonly entryKind: string
+  /** Names that always fit beside those of the cell. */
+  readonly namesBeside: readonly string[]
   readonly initial: unknown
 }
 
@@ -32,6 +37,9 @@ export function fieldOf(parameter: ParameterView): Field {
     minimum: numeric(schema['minimum']) ?? numeric(schema['exclusiveMinimum']),
     maximum: numeric(schema['maximum']) ?? numeric(schema['exclusiveMaximum']),
     choices,
+    nameKind: text(schema['cell_name']) || text(schema['cell_label']),
+    entryKind: text(schema['entry']),
+    namesBeside: Array.isArray(schema['or']) ? schema['or'].map(String) : [],
     initial: shownValue(kind, schema['default']),
   }
 }
@@ -63,6 +71,14 @@ function text(value: unknown): string {
 
 function numeric(value: unknown): number | undefined {
   return typeof value === 'number' ? value : undefined
+}
+
+/** What there is to choose from; undefined where the field names nothing, or nothing of that kind is known. */
+export function offersFor(field: Field, cell: Pick<CatalogueBody, 'names' | 'entries'> | undefined): readonly string[] | undefined {
+  if (!cell || (!field.nameKind && !field.entryKind)) return undefined
+  if (field.entryKind) return cell.entries.filter((entry) => entry.kind === field.entryKind).map((entry) => entry.name)
+  const known = lookup(cell.names, field.nameKind)
+  return known && [...new Set([...field.namesBeside, ...known])]
 }
 
 /** The allowed range in words, `0.05 – 1`, `≥ 1`; empty without limits. */

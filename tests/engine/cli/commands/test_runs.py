@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import NodeEntered, NodeExited
+from engine.event import Event, NodeEntered, NodeExited, RunEnded
 from tests.engine.cli.command import CommandOutput, flexcell
-from tests.engine.cli.process import entered, events_in, run_id_in, runs_in, started, until
+from tests.engine.cli.process import entered, events_in, run_id_in, started, until
 
 STEPS = """
 flexcell: 1
@@ -43,6 +43,11 @@ def behavior(tmp_path: Path) -> Path:
     return file
 
 
+def is_over(last: Event) -> bool:
+    """Tell whether this is the last event of a run that has ended."""
+    return isinstance(last, RunEnded)
+
+
 def finished(behavior: Path, *options: str) -> CommandOutput:
     """Run it in virtual time."""
     return flexcell("run", behavior, "--clock", "virtual", "-q", *options, cwd=behavior.parent)
@@ -54,7 +59,7 @@ def test_runs_are_listed_with_their_state(behavior: Path) -> None:
     assert flexcell("runs", cwd=folder).code == 2
     finished(behavior)
     with started("run", behavior, "-q", "-p", "long=3000", cwd=folder) as process:
-        until(process, folder, lambda events: len(runs_in(folder)) == 2 and entered("root/two/wait")(events))
+        until(process, folder, lambda events: entered("root/two/wait")(events) and not is_over(events[-1]))
         lines = json.loads(flexcell("runs", "--json", cwd=folder).out)
         assert [(line["behavior"], line["status"]) for line in lines] == [("steps", "finished"), ("steps", "running")]
     said = flexcell("runs", cwd=folder)
@@ -62,6 +67,9 @@ def test_runs_are_listed_with_their_state(behavior: Path) -> None:
     words = [line.split() for line in said.out.splitlines()]
     assert [line[2] for line in words] == ["status", "finished", "interrupted"]
     assert words[2][0] == run_id_in(folder)
+    # What a run that was killed took is known up to its last event.
+    assert words[2][-3:-1] == [f"{events_in(folder)[-1].time_s:.2f}", "s"]
+    assert [line["duration_s"] for line in lines] == [1.0, lines[1]["duration_s"]]
 
 
 def test_a_run_is_shown_where_it_stood(behavior: Path) -> None:

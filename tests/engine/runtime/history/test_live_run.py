@@ -24,7 +24,7 @@ from engine.event import (
     UndoEnded,
     UndoStarted,
 )
-from engine.runtime.history.event_log import CauseLink, log_line
+from engine.runtime.history.event_log import CauseLine, log_line
 from engine.runtime.history.live_run import LOG_LINES, LiveRun
 from engine.runtime.history.run_state import NodeLive, PlanLive
 
@@ -182,8 +182,8 @@ def test_a_cause_chain_is_reported_from_the_inside_out() -> None:
     line = log_line(exited(1, "root/a", "failed", cause=cause), duration_s=1.5)
     assert (line.level, line.text) == ("error", "ended with failed after 1.50 s")
     assert line.causes == (
-        CauseLink(message="inner", where="arm", kind="B"),
-        CauseLink(message="outer", where="root/a", kind="A"),
+        CauseLine(message="inner", where="arm", kind="B"),
+        CauseLine(message="outer", where="root/a", kind="A"),
     )
 
 

@@ -226,6 +226,18 @@ async def test_a_process_that_does_not_start_is_an_error_and_leaves_nothing_open
     gc.collect()
 
 
+async def test_a_world_that_is_not_built_in_time_says_what_to_do_and_leaves_no_process() -> None:
+    host = ProcessHost(msgspec.structs.replace(one_arm(), start_limit_s=0.01))
+    with pytest.raises(RobotError) as error:
+        await SimWorld(one_arm(), host=host).__aenter__()
+    assert str(error.value) == (
+        "the world's process was started and had not built the world after 0.01 s (the machine may be overloaded: end"
+        " other programs and start again, or allow more time in the cell,"
+        " `world: {kind: mujoco, start_limit_s: 0.02}`)"
+    )
+    assert not host.pid
+
+
 async def test_a_world_that_cannot_be_built_says_why() -> None:
     egg = FixtureBody(name="egg", shape="egg", size_m=(0.1,), pose=Pose(xyz=(0.0, 0.0, 0.0)))
     host = ProcessHost(SimScene(fixtures=(egg,)))

@@ -2,9 +2,10 @@
 import { Group, Text } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
+import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
 import type { Side } from '../../document/comparison'
-import { duration, wallTime } from '../../document/time'
+import { wallTime } from '../../document/time'
 
 interface ComparedRunProps {
   readonly side: Side
@@ -24,7 +25,7 @@ export function ComparedRun({ side, run, href, onOpen }: ComparedRunProps) {
       </PageLink>
       <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
       <Text span inherit c="dimmed">
-        {wallTime(run.started_at_s)}, {duration(run.duration_s)}
+        {wallTime(run.started_at_s)}, <RunTime run={run} />
       </Text>
       {run.cause && (
         <Text span inherit truncate flex="1 1 100%" c="var(--failed)" title={run.cause}>

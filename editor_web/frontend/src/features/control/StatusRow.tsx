@@ -5,12 +5,11 @@ import type { ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
 import type { ControlView, GateWait, GraphNode, RunView } from '../../api/types'
-import { Elapsed, TimeText } from '../../components/Elapsed'
+import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
 import { TextButton } from '../../components/TextButton'
 import { LEVEL_WORDS, operatorWords, waitingWords } from '../../document/commands'
 import { isActive, isFailed, requestsOf, runStateOf } from '../../document/runState'
-import { duration } from '../../document/time'
 import { Requests } from './Requests'
 import classes from './StatusRow.module.css'
 import type { Commands } from './useCommands'
@@ -41,7 +40,7 @@ export function StatusRow({ run, root, commands, onShow, onFailure, notices, of 
           <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'}>
             <RunBadge run={run} control={control} />
           </span>
-          {run && (isActive(run) ? <Elapsed sinceS={0} /> : <TimeText>{duration(run.duration_s)}</TimeText>)}
+          {run && <RunTime run={run} />}
         </div>
         <Stack gap={2} miw={0}>
           {notices}

@@ -2,9 +2,10 @@
 import { lookup, without, type Dict } from '../../document/dict'
 import { ActionIcon, Checkbox, Code, Fieldset, Group, NativeSelect, SimpleGrid, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus, IconTrash } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useMemo, useState } from 'react'
 import type { DocumentInfo } from '../../api/types'
 import { looseValue, shownValue } from '../../document/editing/fields'
+import { fittingNames, nameKindOf, nameKinds, namingOf, type NameSources } from '../../document/editing/parameterNames'
 import { perform } from './apply'
 import { FormLine } from './FormParts'
 import { PlainList } from './PlainList'
@@ -116,6 +117,16 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
   )
 }
 
+const NO_NAMES: NameSources['names'] = {}
+const NO_ENTRIES: NameSources['entries'] = []
+
+/** The names of the document's own cell, and the entries of the open one. */
+function useNameSources(): NameSources {
+  const names = useEditor((s) => s.names ?? s.catalogue?.names ?? NO_NAMES)
+  const entries = useEditor((s) => s.catalogue?.entries ?? NO_ENTRIES)
+  return useMemo(() => ({ names, entries }), [names, entries])
+}
+
 function Parameters({ parameters }: { parameters: Mapping }) {
   const set = (name: string, change: Mapping) =>
     setDocument(`Parameter ${name}`, (now) => {
@@ -123,6 +134,7 @@ function Parameters({ parameters }: { parameters: Mapping }) {
       const next = Object.fromEntries(Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''))
       return { parameters: { ...now.parameters, [name]: next } }
     })
+  const sources = useNameSources()
   return (
     <>
       {Object.entries(parameters).map(([name, given]) => {
@@ -156,9 +168,21 @@ function Parameters({ parameters }: { parameters: Mapping }) {
                   data={[...TYPES]}
                 />
               </FormLine>
+              {parameter['type'] === 'string' && (
+                <FormLine label="Names">
+                  <NativeSelect
+                    size="xs"
+                    aria-label={`What ${name} names`}
+                    value={nameKindOf(parameter)}
+                    onChange={(event) => set(name, namingOf(event.currentTarget.value))}
+                    data={[{ value: '', label: 'nothing of the cell' }, ...nameKinds(sources, parameter)]}
+                  />
+                </FormLine>
+              )}
               <FormLine label="Default">
                 <TemplateInput
                   label={`Default of ${name}`}
+                  options={fittingNames(sources, parameter)}
                   placeholder="must be given"
                   value={shownValue(parameter['default'])}
                   onCommit={(typed) =>

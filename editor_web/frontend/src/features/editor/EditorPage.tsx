@@ -11,6 +11,7 @@ import { askStartHere, type StartHere } from '../../api/startHere'
 import { Empty } from '../../components/Empty'
 import { WhileLoading, lazyView } from '../../components/lazyView'
 import { Loading } from '../../components/Loading'
+import { NoticePlace } from '../../components/NoticePlace'
 import { Splitter } from '../../components/Splitter'
 import { ViewBoundary } from '../../components/ViewBoundary'
 import { lookForFindings } from './apply'
@@ -28,7 +29,7 @@ import { useFileDialog } from './fileDialogs'
 import { Inspector } from './Inspector'
 import { storeDraftNow } from './draftStorage'
 import { LibraryPanel } from './LibraryPanel'
-import { NoticeLine } from './NoticeLine'
+import { DoneNote, NoticeLine } from './NoticeLine'
 import { trackViewportMotion } from './viewportMotion'
 import { Palettes } from './Palettes'
 import { refreshReferences } from './references'
@@ -181,7 +182,10 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   return (
     <Flex direction="column" pos="relative" flex={1} mih={0} ref={element} data-editor aria-busy={isBusy}>
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
-      <NoticeLine />
+      <NoticePlace>
+        <NoticeLine />
+      </NoticePlace>
+      <DoneNote />
       <ConflictPanel />
       {isNarrow ? (
         <Tabs defaultValue="canvas">

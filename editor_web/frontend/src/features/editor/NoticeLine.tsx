@@ -18,11 +18,6 @@ export function NoticeLine() {
   const id = useEditor((s) => s.id)
   const gone = useLive((s) => isGone(s, id))
   const isOutdated = useEditor((s) => s.isOutdated && !gone)
-  useEffect(() => {
-    if (notice?.tone !== 'done') return
-    const timer = setTimeout(() => editor().notice === notice && setEditor({ notice: undefined }), SHORT_MS)
-    return () => clearTimeout(timer)
-  }, [notice])
   return (
     <>
       {gone && (
@@ -54,16 +49,28 @@ export function NoticeLine() {
           <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ notice: undefined })} />
         </Note>
       )}
-      <Box pos="absolute" bottom={20} left="50%" style={TOAST} role="status">
-        {notice?.tone === 'done' && (
-          <Paper shadow="md" px="md" py={6} bg="var(--text)" c="var(--surface)" radius="xl">
-            <Flex align="center" gap={6} fz="sm" fw={550}>
-              <IconCheck size={15} aria-hidden /> {notice.message}
-            </Flex>
-          </Paper>
-        )}
-      </Box>
     </>
+  )
+}
+
+/** What was done, for a moment at the foot of the page. */
+export function DoneNote() {
+  const notice = useEditor((s) => s.notice)
+  useEffect(() => {
+    if (notice?.tone !== 'done') return
+    const timer = setTimeout(() => editor().notice === notice && setEditor({ notice: undefined }), SHORT_MS)
+    return () => clearTimeout(timer)
+  }, [notice])
+  return (
+    <Box pos="absolute" bottom={20} left="50%" style={TOAST} role="status">
+      {notice?.tone === 'done' && (
+        <Paper shadow="md" px="md" py={6} bg="var(--text)" c="var(--surface)" radius="xl">
+          <Flex align="center" gap={6} fz="sm" fw={550}>
+            <IconCheck size={15} aria-hidden /> {notice.message}
+          </Flex>
+        </Paper>
+      )}
+    </Box>
   )
 }
 

@@ -3,10 +3,11 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
 import { live, server, session, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditAnswer } from '../../api/types'
+import type { CatalogueBody, ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditAnswer } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { nodeOf } from '../../document/editing/model'
 import { draftFrom } from './apply'
+import { DocumentForm } from './DocumentForm'
 import { PolicyForm } from './PolicyForm'
 import { RulesForm } from './RulesForm'
 import { blank, rootOf, setEditor, useEditor } from './store'
@@ -248,4 +249,43 @@ it('says what the server refuses, and leaves the document as it was', async () =
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
   await waitFor(() => expect(useEditor.getState().notice).toMatchObject({ message: 'the server has failed' }))
   expect(rows()).toHaveLength(4)
+})
+
+const CATALOGUE: CatalogueBody = {
+  states: [],
+  containers: [],
+  behaviors: [],
+  entries: [{ kind: 'joints', name: 'home' }],
+  names: { robot: ['left', 'right'], camera: ['eye'] },
+}
+
+function declaring(parameters: DocumentInfo['parameters']) {
+  const document = { ...INFO, parameters }
+  const draft = draftFrom({ hash: 'h1', graph: ROOT, findings: [], checked: true, document }, 'one', undefined)
+  setEditor({ history: newHistory(draft), catalogue: CATALOGUE })
+  return show(<DocumentForm />)
+}
+
+it('declares what a text parameter names, in the place of what it named before', async () => {
+  const user = declaring({ arm: { type: 'string', entry: 'joints', default: 'left' }, speed: { type: 'number', default: 1 } })
+  expect(screen.queryByLabelText('What speed names')).toBeNull()
+  const kind = screen.getByLabelText('What arm names')
+  expect(kind).toHaveValue('entry joints')
+  const kinds = within(kind).getAllByRole('option')
+  expect(kinds.map((each) => each.textContent)).toEqual(['nothing of the cell', 'camera', 'robot', 'entry: joints'])
+  await user.selectOptions(kind, 'robot')
+  await waitFor(() => expect(edits()).toHaveLength(1))
+  const arm = { type: 'string', default: 'left', cell_name: 'robot' }
+  expect(edits()[0]).toEqual({ edit: 'set_document', changes: { parameters: { arm, speed: { type: 'number', default: 1 } } } })
+})
+
+it('offers the names that fit as the default of a parameter', async () => {
+  const user = declaring({ arm: { type: 'string', cell_name: 'robot' } })
+  await user.click(screen.getByLabelText('Default of arm'))
+  const list = await screen.findByRole('listbox')
+  expect(
+    within(list)
+      .getAllByRole('option')
+      .map((each) => each.textContent),
+  ).toEqual(['left', 'right'])
 })

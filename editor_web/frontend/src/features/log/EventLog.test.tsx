@@ -6,9 +6,15 @@ import type { LogLine } from '../../api/types'
 import { EventLog } from './EventLog'
 
 const CAUSES = [
-  { message: 'no contact on either pad', where: 'left', kind: 'GraspFailed', compared: [] },
-  { message: 'the part has slipped', where: '', kind: 'PartLost', compared: [] },
-  { message: 'root/grasp failed', where: 'root/grasp', kind: 'StateError', compared: [] },
+  {
+    message: 'no contact on either pad',
+    where: 'left/gripper/gripper_grasp',
+    kind: 'GraspFailed',
+    compared: [],
+    skill: 'left gripper: grasp',
+  },
+  { message: 'the part has slipped', where: '', kind: 'PartLost', compared: [], skill: '' },
+  { message: 'root/grasp failed', where: 'root/grasp', kind: 'StateError', compared: [], skill: '' },
 ]
 
 function line(seq: number, told: Partial<LogLine> = {}): LogLine {
@@ -65,7 +71,11 @@ it('unfolds the causes of a failure, from what was measured on', async () => {
   expect(fold).toHaveAttribute('aria-expanded', 'false')
   await user.click(fold)
   const causes = within(log().getByRole('list')).getAllByRole('listitem')
-  expect(causes.map((each) => each.firstChild?.textContent)).toEqual(CAUSES.map((cause) => cause.message))
+  expect(causes.map((each) => each.firstChild?.textContent)).toEqual([
+    'left gripper: grasp: no contact on either pad',
+    'the part has slipped',
+    'root/grasp failed',
+  ])
   expect(causes[0]).toHaveTextContent('GraspFailed · left')
   await user.click(fold)
   expect(log().queryByRole('list')).toBeNull()

@@ -7,6 +7,7 @@ import { useLive } from '../../api/live'
 import type { LogLine } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
+import { causeWords } from '../../document/failure'
 import classes from './EventLog.module.css'
 import { passing, type Level } from './filter'
 
@@ -149,7 +150,7 @@ const Line = memo(function Line({ line }: { line: LogLine }) {
           <Box component="ol" my="4xs" pl={18} c="var(--text)" aria-label="Causes" ref={intoView}>
             {line.causes.map((cause, index) => (
               <li key={index}>
-                <div>{cause.message}</div>
+                <div>{causeWords(cause)}</div>
                 <Text inherit ff="monospace" c="var(--quiet)">
                   {[cause.kind, cause.where].filter(Boolean).join(' · ')}
                 </Text>

@@ -176,3 +176,42 @@ it('says why a behavior of another cell cannot be started here', () => {
   show(<Form of={{ ...SHIFT, fit: { cell: 'lathe', obstacle: 'it is written for the cell lathe' } }} obstacle="no" />)
   expect(screen.getByRole('alert')).toHaveTextContent('It cannot be started hereit is written for the cell lathe')
 })
+
+const NAMING: BehaviorView = {
+  ...SHIFT,
+  parameters: [
+    { name: 'arm', schema: { type: 'string', title: 'Arm', cell_name: 'robot', default: 'left' }, required: false },
+    { name: 'place', schema: { type: 'string', title: 'Place', entry: 'joints', default: '' }, required: false },
+  ],
+}
+
+it('offers what the cell and its store have for a parameter that names it, and takes another name', async () => {
+  server().on('GET /catalogue', {
+    states: [],
+    containers: [],
+    behaviors: [],
+    names: { robot: ['left', 'right'] },
+    entries: [
+      { kind: 'joints', name: 'home' },
+      { kind: 'pose', name: 'tray' },
+    ],
+  })
+  const user = show(<Form of={NAMING} />)
+  const arm = await screen.findByRole('combobox', { name: /^Arm/ })
+  await user.click(arm)
+  await user.click(await screen.findByRole('option', { name: 'right' }))
+  const place = screen.getByRole('combobox', { name: /^Place/ })
+  await user.click(place)
+  expect(await screen.findByRole('option', { name: 'home' })).toBeVisible()
+  expect(screen.queryByRole('option', { name: 'tray' })).toBeNull()
+  await user.type(place, 'shelf')
+  await user.click(screen.getByRole('button', { name: 'Start' }))
+  await waitFor(() => expect(started).toHaveBeenCalled())
+  expect(sent()).toMatchObject([{ parameters: { arm: 'right', place: 'shelf' } }])
+})
+
+it('does not ask for the names of the cell where no parameter names anything', () => {
+  show(<Form />)
+  expect(screen.getByLabelText(/^Part/)).not.toHaveAttribute('aria-haspopup')
+  expect(server().unanswered).toEqual([])
+})

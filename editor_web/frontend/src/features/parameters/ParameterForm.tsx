@@ -7,6 +7,7 @@ import type { BehaviorView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { ParameterField } from '../../components/ParameterField'
 import { StartOptions } from './StartOptions'
+import { useOffers } from './useOffers'
 import { useStart } from './useStart'
 
 /** The id by which buttons elsewhere on the page submit the form. */
@@ -29,6 +30,7 @@ export interface ParameterFormProps {
 
 export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, run }: ParameterFormProps) {
   const start = useStart(behavior, onStarted)
+  const offersOf = useOffers(start.fields)
   const { fields, values, set, problems, submit, repeat, seed, setSeed } = start
   return (
     <form
@@ -57,6 +59,7 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
             field={field}
             value={lookup(values, field.name)}
             problem={lookup(problems, field.name)}
+            offers={offersOf(field)}
             onChange={(value) => set(field.name, value)}
           />
         ))}

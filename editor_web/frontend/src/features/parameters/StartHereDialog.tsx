@@ -11,6 +11,7 @@ import { Dialog } from '../../components/Dialog'
 import { ParameterField } from '../../components/ParameterField'
 import { lookup } from '../../document/dict'
 import { nameOfPath } from '../../document/path'
+import { useOffers } from './useOffers'
 import { useStart } from './useStart'
 
 export interface StartHereDialogProps {
@@ -71,6 +72,7 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
     started,
     placeOf(here, found),
   )
+  const offersOf = useOffers(fields)
   const [isFilled, setFilled] = useState(false)
   useEffect(() => {
     if (isFilled || here.kind === 'to') return
@@ -96,6 +98,7 @@ function StartForm({ behavior, obstacle, onStarted, here, found, onDone }: Start
             field={field}
             value={lookup(values, field.name)}
             problem={lookup(problems, field.name)}
+            offers={offersOf(field)}
             onChange={(value) => set(field.name, value)}
           />
         ))}

@@ -8,8 +8,9 @@ import { pastQueries, type PastQuery } from '../../api/timeline'
 import type { PastRunBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
+import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
-import { duration, wallTime } from '../../document/time'
+import { wallTime } from '../../document/time'
 import { dayEndS, dayStartS } from './days'
 import classes from './past.module.css'
 
@@ -153,7 +154,7 @@ function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: (
         <RunBadge run={run.status === 'running' && !run.here ? { status: 'interrupted' } : run} />
       </Group>
       <Text span display="block" fz="0.78rem" c="dimmed">
-        {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
+        {wallTime(run.started_at_s)} · <RunTime run={run} /> · {run.events} events{run.recording && ' · recorded'}
       </Text>
       <Text span display="block" fz="0.72rem" ff="monospace" c="dimmed">
         {run.id}
@@ -195,25 +196,28 @@ interface CompareChosenProps extends Pick<PastRunsProps, 'onCompare'> {
 /** What can be done with the runs that are ticked; the older one is the left one. */
 function CompareChosen({ chosen, onCompare, onNone }: CompareChosenProps) {
   const [left, right] = chosen.toSorted((one, other) => one.started_at_s - other.started_at_s)
-  if (!left) return null
   return (
-    <Group gap="sm" my="xs" role="group" aria-label="Selected runs">
+    <Group gap="sm" my="xs" wrap="nowrap" h={30} role="group" aria-label="Selected runs">
       <Button
         size="xs"
         leftSection={<IconGitCompare size={15} aria-hidden />}
         disabled={!right}
-        onClick={() => right && onCompare(left.id, right.id)}
+        onClick={() => left && right && onCompare(left.id, right.id)}
       >
         Compare
       </Button>
-      <Text span inherit c="dimmed">
-        {right
+      <Text span inherit truncate c="dimmed">
+        {left && right
           ? `${left.behavior} of ${wallTime(left.started_at_s)} with ${right.behavior} of ${wallTime(right.started_at_s)}`
-          : 'Select a second run.'}
+          : left
+            ? 'Select a second run.'
+            : 'Select two runs to compare.'}
       </Text>
-      <Button size="xs" variant="subtle" color="gray" onClick={onNone}>
-        Select none
-      </Button>
+      {left && (
+        <Button size="xs" variant="subtle" color="gray" flex="none" onClick={onNone}>
+          Select none
+        </Button>
+      )}
     </Group>
   )
 }

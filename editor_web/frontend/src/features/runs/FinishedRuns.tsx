@@ -2,9 +2,10 @@
 import { Checkbox, Divider, Group, List, Paper, Text } from '@mantine/core'
 import type { RunView } from '../../api/types'
 import { RunBadge } from '../../components/StatusBadge'
+import { RunTime } from '../../components/RunTime'
 import { PageLink } from '../../components/PageLink'
 import { isFailed } from '../../document/runState'
-import { duration, wallTime } from '../../document/time'
+import { wallTime } from '../../document/time'
 import { nameOf } from './RunList'
 
 interface FinishedRunsProps {
@@ -28,7 +29,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
                 {nameOf(run.behavior)}
               </PageLink>
               <Text span inherit c="dimmed">
-                {wallTime(run.started_at_s)}, {duration(run.duration_s)}
+                {wallTime(run.started_at_s)}, <RunTime run={run} />
               </Text>
               {run.cause && (
                 <Text span inherit truncate flex="1 1 12rem" c={isFailed(run) ? 'var(--failed)' : 'dimmed'} title={run.cause}>

@@ -5,6 +5,7 @@ import { useLive } from '../../api/live'
 import { useNodePart } from '../../api/liveParts'
 import type { GraphNode, RunView } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
+import { RunTime } from '../../components/RunTime'
 import { PageLink } from '../../components/PageLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { waitingWords } from '../../document/commands'
@@ -33,7 +34,6 @@ export interface RunCardProps {
 
 export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, requests, commands }: RunCardProps) {
   const control = useLive((s) => s.control)
-  const isKnown = useLive((s) => s.run === run.id)
   const name = nameOf(run.behavior)
   const state = runStateOf(run, control)
   return (
@@ -55,7 +55,7 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
               {name}
             </PageLink>
           </Title>
-          {isKnown && <Elapsed sinceS={0} />}
+          <RunTime run={run} />
           <Text span inherit c="dimmed">
             since {wallTime(run.started_at_s)}
           </Text>

@@ -1,9 +1,7 @@
 /** The runs of this server, newest first. */
 import { List, Text } from '@mantine/core'
-import { useEffect, useState } from 'react'
-import { serverNow, useLive } from '../../api/live'
+import { useLive } from '../../api/live'
 import type { RunView } from '../../api/types'
-import { Elapsed, TimeText } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
 import { SideLink } from '../../components/SideLink'
 import { StatusIcon } from '../../components/StatusIcon'
@@ -52,23 +50,4 @@ function runText(run: RunView): string {
 /** The file name without its ending. */
 export function nameOf(behavior: string): string {
   return fileTitle(behavior)
-}
-
-/** How long a run takes or took. */
-export function RunTime({ run }: { run: RunView }) {
-  const watched = useLive((s) => s.run)
-  // The time of a paused run stands.
-  if (isActive(run) && run.id === watched) return <Elapsed sinceS={0} />
-  if (isActive(run) && run.waits !== 'paused') return <SinceStart startedS={run.started_at_s} />
-  return <TimeText>{duration(run.duration_s)}</TimeText>
-}
-
-/** By the clock on the wall, for runs that are not watched. */
-function SinceStart({ startedS }: { startedS: number }) {
-  const [now, setNow] = useState(serverNow)
-  useEffect(() => {
-    const timer = setInterval(() => setNow(serverNow()), 1000)
-    return () => clearInterval(timer)
-  }, [])
-  return <TimeText>{duration(Math.max(0, now - startedS))}</TimeText>
 }

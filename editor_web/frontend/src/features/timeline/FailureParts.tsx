@@ -1,7 +1,7 @@
 /** The sections of a failure: its causes, the way down to it, what differs from the last good run, what happened there. */
 import { Anchor, List, Table, Text } from '@mantine/core'
-import type { CauseLink, LogLine, MeasuredValue, RunComparison, RunFailure } from '../../api/types'
-import { differenceLines, expectedWords, measuredWords, missWords } from '../../document/failure'
+import type { CauseLine, LogLine, MeasuredValue, RunComparison, RunFailure } from '../../api/types'
+import { causeWords, differenceLines, expectedWords, measuredWords, missWords } from '../../document/failure'
 import { wallTime } from '../../document/time'
 import { nameOfPath } from '../../document/path'
 import type { ReactNode } from 'react'
@@ -41,7 +41,7 @@ export function Measured({ values }: { readonly values: readonly MeasuredValue[]
   )
 }
 
-export function Causes({ links }: { readonly links: readonly CauseLink[] }) {
+export function Causes({ links }: { readonly links: readonly CauseLine[] }) {
   return (
     <List {...LINES}>
       {links.map((link, index) => (
@@ -49,7 +49,7 @@ export function Causes({ links }: { readonly links: readonly CauseLink[] }) {
         // eslint-disable-next-line react/no-array-index-key
         <List.Item key={index} {...(index === 0 && ORIGIN)}>
           {index > 0 && 'so '}
-          {link.message}
+          {causeWords(link)}
           <Text size="xs" c="dimmed" ff="monospace">
             {[link.kind, link.where].filter(Boolean).join(' · ')}
           </Text>

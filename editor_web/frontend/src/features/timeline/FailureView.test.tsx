@@ -18,11 +18,12 @@ const FAILURE: RunFailure = {
   links: [
     {
       message: 'no contact on either pad',
-      where: 'left',
+      where: 'left/gripper/gripper_grasp',
       kind: 'GraspFailed',
+      skill: 'left gripper: grasp',
       compared: [{ quantity: 'opening', measured: 1.2, unit: 'mm', least: 20, most: 40 }],
     },
-    { message: 'the grasp failed', where: '', kind: 'StateError', compared: [] },
+    { message: 'the grasp failed', where: '', kind: 'StateError', compared: [], skill: '' },
   ],
   steps: [
     { path: 'root', seq: 11, time_s: 1.6, kind: 'exited', level: 'error', text: 'ended with bad', causes: [] },
@@ -71,7 +72,7 @@ it('tells where it began, why, and what happened there', async () => {
   expect(screen.getByText('It began in root/grasp at 1.50 s')).toBeVisible()
   expect(screen.getByText('look at the gripper')).toBeVisible()
   expect(sections()).toEqual({
-    Why: ['no contact on either padGraspFailed · left', 'so the grasp failedStateError'],
+    Why: ['left gripper: grasp: no contact on either padGraspFailed · left/gripper/gripper_grasp', 'so the grasp failedStateError'],
     Where: ['root ended with bad at 1.60 s', 'grasp failed at 1.50 s'],
     'What happened there': ['1.40 s closes'],
   })

@@ -2,8 +2,9 @@
 import { Box, Checkbox, List, Progress, Text } from '@mantine/core'
 import type { PastRun } from '../../api/types'
 import { PageLink } from '../../components/PageLink'
+import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
-import { duration, wallTime } from '../../document/time'
+import { wallTime } from '../../document/time'
 import styles from './trend.module.css'
 
 interface RunBarsProps {
@@ -33,7 +34,7 @@ export function RunBars({ runs, href, onOpen, chosen, onChoose }: RunBarsProps) 
             <RunBadge run={run.status === 'running' ? { status: 'interrupted' } : run} />
             <Progress w="100%" size="md" value={(run.duration_s / longestS) * 100} color={`var(--${endOf(run)})`} aria-hidden />
             <Text span inherit ta="right" style={{ fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' }}>
-              {duration(run.duration_s)}
+              <RunTime run={run} />
             </Text>
           </li>
         ))}

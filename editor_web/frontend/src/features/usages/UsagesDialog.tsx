@@ -2,9 +2,8 @@
 import { Autocomplete, Code, Group, List, ScrollArea, SegmentedControl, Stack, Text, Title } from '@mantine/core'
 import { useQuery } from '@tanstack/react-query'
 import { useState } from 'react'
-import { documents } from '../../api/documents'
+import { catalogueQuery } from '../../api/catalogueQuery'
 import { useAnswer } from '../../api/queryClient'
-import { queryKeys } from '../../api/queryKeys'
 import type { CatalogueBody, Usage } from '../../api/types'
 import { findUsages, usagesQuery } from '../../api/usages'
 import { Dialog } from '../../components/Dialog'
@@ -27,7 +26,7 @@ const KINDS: readonly { readonly value: UsedKind; readonly label: string }[] = [
 
 export function UsagesDialog({ asked, onOpen }: UsagesDialogProps) {
   const [used, setUsed] = useState(asked)
-  const { data: catalogue } = useQuery({ queryKey: queryKeys.catalogue, queryFn: documents.catalogue })
+  const { data: catalogue } = useQuery(catalogueQuery())
   const { value, problem } = useAnswer(usagesQuery(used))
   const found = value?.found ?? []
   const byDocument = new Map(found.map(({ document }) => [document, found.filter((usage) => usage.document === document)]))
