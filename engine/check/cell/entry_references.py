@@ -13,6 +13,8 @@ from engine.check.finding import Finding
 from engine.check.values.annotated_values import annotated_values
 from engine.check.values.known_values import known_part
 from engine.check.values.parameter_checks import default_values, value_by_default
+from engine.document.expression.expression import Template
+from engine.errors import ExpressionError
 from engine.suggestions import did_you_mean
 
 Entries = Mapping[str, Collection[str]]
@@ -58,11 +60,17 @@ def check_entries(subject: AnalyzedBehavior, entries: Entries) -> Iterator[Findi
             if known and isinstance(value, dict | str) and signature is not None and name in signature.parameters:
                 # A field `entry` without a declared kind may name an entry of any kind.
                 kinds = {("entry",): "", **entry_fields(signature.parameters[name].type)}
-                specs = [subject.behavior.parameters[key] for key in found.names & subject.behavior.parameters.keys()]
-                # Found where the parameter is declared.
-                reported = {(spec.entry, spec.default) for spec in specs if spec.entry}
-                kinds = {steps: kind for steps, kind in kinds.items() if (kind, _inside(value, steps)) not in reported}
-                yield from _check_value(subject, placed, name, cast("object", value), kinds, entries)
+                given = cast("object", value)
+                reported = _declared_entries(subject, found)
+                kinds = {steps: kind for steps, kind in kinds.items() if (kind, _inside(given, steps)) not in reported}
+                yield from _check_value(subject, placed, name, given, kinds, entries)
+
+
+def _declared_entries(subject: AnalyzedBehavior, found: Template | ExpressionError) -> list[tuple[str, object]]:
+    """Return kind and default of the parameters in a value that declare an entry: these are found where they stand."""
+    names = found.names if isinstance(found, Template) else ()
+    specs = [spec for name, spec in subject.behavior.parameters.items() if name in names]
+    return [(spec.entry, spec.default) for spec in specs if spec.entry]
 
 
 def _check_value(

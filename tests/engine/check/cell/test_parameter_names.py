@@ -102,6 +102,16 @@ def test_a_value_that_is_given_to_a_run_is_looked_for_too(tmp_path: Path) -> Non
     assert found[-1].message == "the cell bench has no robot `middle`, the value of the parameter `arm`"
 
 
+def test_a_value_that_is_no_text_names_nothing(tmp_path: Path) -> None:
+    declared = """parameters:
+  arm: {type: string, cell_name: robot, default: left}
+  tool: {type: string, cell_name: gripper, default: left}
+  place: {type: list, entry: joints, default: [home]}
+"""
+    nodes = NODES.replace('{entry: "${place}"}', '"${place}"')
+    assert "bad-declaration" in {each.code for each in findings(tmp_path, declared, nodes=nodes)}
+
+
 def naming(folder: Path, parameters: str, *, nodes: str = NODES, **files: str) -> dict[str, dict[str, object]]:
     """Return what the parameters name."""
     findings(folder, parameters, nodes=nodes, **files)
