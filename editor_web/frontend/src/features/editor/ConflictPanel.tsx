@@ -85,7 +85,15 @@ function ConflictRow({ conflict, side, onChoose }: ConflictRowProps) {
   const what = field || 'the whole node'
   return (
     <Table.Tr data-conflict={keyOf(conflict)} data-side={side}>
-      <Table.Td>{isNode ? <TextButton onPress={() => reveal(path)}>{nameOfPath(path)}</TextButton> : nameOfPath(path)}</Table.Td>
+      <Table.Td>
+        {isNode ? (
+          <TextButton label={`${path}, ${what}`} onPress={() => reveal(path)}>
+            {nameOfPath(path)}
+          </TextButton>
+        ) : (
+          nameOfPath(path)
+        )}
+      </Table.Td>
       <Table.Td>{what}</Table.Td>
       <Table.Td>
         <Value value={conflict.base} />
