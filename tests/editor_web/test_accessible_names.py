@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Page, expect
 from engine.runtime.run_options import RunOptions
 from engine.skills.entries import WriteEntry
 from tests.editor_web.accessible_names import controls_of, require_unique_names
-from tests.editor_web.browsing import opened_page
+from tests.editor_web.browsing import opened_page, require_accessible
 from tests.editor_web.editing import card, idle
 from tests.editor_web.teach_page import tab
 from tests.editor_web.teach_site import TeachSite
@@ -215,6 +215,8 @@ def comparison(page: Page, _: Named) -> None:
     for name in ("Visit", "Durations", "Settings", "Curves", "3D"):
         tab(page, name)
         require_unique_names(page, name)
+    expect(page.get_by_role("slider", name="Time since the start of the visit")).to_be_visible()
+    require_accessible(page, "two runs in one 3D view")
 
 
 def side_by_side(page: Page, _: Named) -> None:
