@@ -17,7 +17,20 @@ CONTROLS = {
 GROUPS = {
     *("alertdialog", "application", "article", "banner", "complementary", "contentinfo", "dialog", "figure", "form"),
     *("grid", "group", "list", "listbox", "listitem", "log", "main", "menu", "menubar", "navigation", "radiogroup"),
-    *("region", "row", "search", "status", "table", "tablist", "tabpanel", "toolbar", "tree", "treegrid", "treeitem"),
+    *(
+        "Date",
+        "region",
+        "row",
+        "search",
+        "status",
+        "table",
+        "tablist",
+        "tabpanel",
+        "toolbar",
+        "tree",
+        "treegrid",
+        "treeitem",
+    ),
 }
 """Roles that a screen reader says when it enters them; they count where they have a name."""
 

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable, Generator
-from typing import Any
+from itertools import count
+from unittest.mock import patch
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from engine.bus import SkillBus
+from engine.project import cell_runner, session_run
 from engine.runtime.run_options import RunOptions
 from engine.skills.entries import WriteEntry
 from tests.editor_web.accessible_names import controls_of, require_unique_names
 from tests.editor_web.browsing import opened_page, require_accessible
+from tests.editor_web.demonstrating import furnish, teach
 from tests.editor_web.editing import card, idle
-from tests.editor_web.teach_page import tab
-from tests.editor_web.teach_site import TeachSite
-from tests.editor_web.test_entry_preview import HOME, REACH, REACH_ID, TURNED, TWO_ARMS
-from tests.editor_web.test_teach_page import trigger
+from tests.editor_web.fake_plant import FakePlant
+from tests.editor_web.test_entry_preview import REACH, REACH_ID
 from tests.editor_web.test_timeline_page import SORT, SORT_ID
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
@@ -60,20 +63,32 @@ root:
         transitions: {{finished: rest}}
       rest: {{state: flow.Wait, with: {{duration_s: "${{dwell}}"}}, transitions: {{done: good}}}}
 """
-TRIGGERS = (trigger("red", "joint_save"), trigger("green", "pose_save"))
 ASKS = RunOptions(autonomy="low", demand_operator=True)
 
 
 class Named:
-    """A server with two arms, entries and runs: two failed ones of an earlier server, three that are under way."""
+    """A server with devices on its bus, entries and runs: two failed ones of an earlier server, three active ones."""
 
-    def __init__(self, site: TeachSite, past: tuple[str, str]) -> None:
-        self.site, self.past = site, past
-        self.lifts = [self.start(LIFT_ID, supervision=ASKS) for _ in range(2)]
-        self.paused = self.start(REACH_ID, parameters={"place": "ahead"}, supervision=RunOptions(start_paused=True))
+    def __init__(self, shop: Workshop, past: tuple[str, str]) -> None:
+        self.shop, self.past = shop, past
+        self.lifts = [shop.start(LIFT_ID, supervision=ASKS) for _ in range(2)]
+        self.paused = shop.start(SHIFT_ID, supervision=RunOptions(start_paused=True))
 
-    def start(self, behavior: str, *, parameters: dict[str, Any] | None = None, **more: Any) -> str:
-        return self.site.call(self.site.session.start(behavior, parameters=parameters or {}, seed=1, **more))
+
+class StartTimes:
+    """Each run starts in another second: by that its name tells it from others."""
+
+    def __init__(self) -> None:
+        self._starts = count(time.time() - 100.0)
+
+    def time(self) -> float:
+        return next(self._starts)
+
+
+def furnish_all(bus: SkillBus) -> None:
+    """A plant, and an arm that can be taught."""
+    FakePlant().furnish(bus)
+    furnish(bus)
 
 
 @pytest.fixture(scope="module")
@@ -83,22 +98,24 @@ def named(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[
     (project / "behaviors").mkdir()
     for behavior_id, text in ((LIFT_ID, LIFT), (REACH_ID, REACH), (SORT_ID, SORT)):
         (project / behavior_id).write_text(text, encoding="utf-8")
-    with Workshop(host=loopback, project=project) as before:
-        first, second = (before.start(SORT_ID), before.start(SORT_ID))
-        for run in (first, second):
-            before.call(before.session.wait(run))
-    opened = TeachSite(host=loopback, project=project, triggers=TRIGGERS, view=True, warm=False)
-    (project / "behaviors" / "cells" / "taught.yaml").write_text(TWO_ARMS, encoding="utf-8")
-    with opened as site:
-        written: tuple[tuple[str, str, dict[str, Any]], ...] = (
-            ("joints", "ahead", {"joints": HOME}),
-            ("joints", "ahead", {"joints": TURNED}),
-            ("joints", "aside", {"joints": TURNED}),
-            ("pose", "ahead", {"xyz": (0.4, 0.0, 0.5)}),
-        )
-        for kind, name, value in written:
-            site.call(site.bus.call(WriteEntry(kind=kind, name=name, value=value, by="ana"), to="store"))
-        yield Named(site, (first, second))
+    starts = StartTimes()
+    with patch.object(session_run, "time", starts), patch.object(cell_runner, "time", starts):
+        with Workshop(host=loopback, project=project) as before:
+            first, second = (before.start(SORT_ID), before.start(SORT_ID))
+            for run in (first, second):
+                before.call(before.session.wait(run))
+        with Workshop(host=loopback, project=project, furnish=furnish_all, cell_view=True) as shop:
+            close = teach(shop)
+            also = WriteEntry(kind="joints", name="bin", value={"joints": (0.0, 0.2)})
+            shop.call(shop.session.cell.bus.call(also, to="store"))
+            yield Named(shop, (first, second))
+            close()
+
+
+def open_tab(page: Page, name: str) -> None:
+    """Open a tab, whose name may have a count behind it."""
+    page.get_by_role("tab", name=re.compile(f"^{name}")).click()
+    expect(page.get_by_role("tabpanel", name=re.compile(f"^{name}"))).to_be_visible()
 
 
 def home(page: Page, _: Named) -> None:
@@ -111,13 +128,13 @@ def run(page: Page, _: Named) -> None:
     expect(page.get_by_role("region", name="The run asks").get_by_role("listitem")).to_have_count(2)
     require_unique_names(page, "to operate")
     page.locator(".react-flow__node[data-id='root/rest'] [data-node]").click()
-    for label in ("Pause before its entry", "Pause after its outcome"):
+    for set_points, label in enumerate(("Pause before its entry", "Pause after its outcome"), start=1):
         page.get_by_role("switch", name=label).press("Space")
-    expect(page.get_by_role("combobox", name="Only if")).to_have_count(2)
+        expect(page.get_by_role("combobox", name="Only if")).to_have_count(set_points)
     require_unique_names(page, "a node with two breakpoints")
     page.get_by_text("Debug", exact=True).click()
     for name in ("Breakpoints", "Outline", "Plots", "Data", "Bus", "Timeline"):
-        tab(page, name)
+        open_tab(page, name)
         require_unique_names(page, f"to debug, {name}")
     page.get_by_text("3D only", exact=True).click()
     require_unique_names(page, "3D only")
@@ -129,11 +146,10 @@ def bus(page: Page, _: Named) -> None:
     topics = page.get_by_role("navigation", name="The topics of the bus")
     topics.get_by_role("region", name="left", exact=True).get_by_role("button", name=re.compile("^status ")).click()
     message = page.get_by_role("list", name="Latest message of left/status")
-    for folded in message.get_by_role("button", expanded=False).all():
-        folded.press("Enter")
-    expect(message.get_by_role("list", name="settings")).to_be_visible()
+    for part in ("settings", "wrench"):
+        expect(message.get_by_role("list", name=part)).to_be_visible()
     require_unique_names(page, "a message")
-    page.get_by_text("Actions", exact=True).click()
+    page.get_by_role("combobox", name="Part of the bus").select_option("actions")
     page.get_by_role("navigation", name="The actions of the bus").get_by_role("button").first.click()
     require_unique_names(page, "an action")
 
@@ -143,16 +159,21 @@ def editor(page: Page, _: Named) -> None:
     expect(page.locator(".react-flow[data-in-place] .react-flow__node").first).to_be_visible()
     idle(page)
     page.get_by_role("region", name="Library").get_by_role("button", name="Entries").click()
-    expect(page.get_by_role("button", name="Add ahead (pose)")).to_be_visible()
+    expect(page.get_by_role("button", name="Add bin (pose)")).to_be_visible()
     card(page, "root/both").locator("[data-head]").click()
     expect(page.get_by_role("region", name="Ends with")).to_be_visible()
     require_unique_names(page, "a container")
     card(page, "root/both/left/grasp/hold").click()
     expect(page.get_by_role("region", name="Parameters").get_by_role("combobox")).to_be_visible()
     require_unique_names(page, "a state")
+    # The tools of a selected node may lie over another one.
+    page.keyboard.press("Escape")
+    card(page, "root/rest").click()
     page.keyboard.press("Delete")
+    expect(page.locator("[data-problem-count]")).to_contain_text("error")
+    idle(page)
     for name in ("Problems", "Behavior"):
-        tab(page, name)
+        open_tab(page, name)
         require_unique_names(page, name)
 
 
@@ -161,32 +182,6 @@ def entry_field(page: Page, _: Named) -> None:
     expect(page.get_by_role("combobox", name="target", exact=True)).to_be_visible()
     idle(page)
     require_unique_names(page, "a state with a target")
-
-
-def teach(page: Page, _: Named) -> None:
-    """Every tab, with captures and entries compared."""
-    expect(page.get_by_role("radiogroup", name="Arm").get_by_role("radio")).to_have_count(2)
-    for _name in range(2):
-        page.get_by_role("group", name="Capture").get_by_role("button", name="Joints").click()
-    require_unique_names(page, "Move")
-    expect(tab(page, "Captures").get_by_role("list", name="Captures").get_by_role("checkbox")).to_have_count(2)
-    require_unique_names(page, "Captures")
-    entries = tab(page, "Entries")
-    for name in ("joints ahead", "pose ahead"):
-        entries.get_by_role("checkbox", name=f"Compare {name}").check()
-    entries.get_by_role("button", name="joints ahead").click()
-    entries.get_by_role("button", name=re.compile("^1 made by ana")).click()
-    expect(entries.get_by_role("group", name="Revision 1 of ahead")).to_be_visible()
-    require_unique_names(page, "Entries")
-    expect(tab(page, "Triggers").get_by_role("button", name="Edit green pose_save")).to_be_visible()
-    require_unique_names(page, "Triggers")
-    tab(page, "Buttons")
-    require_unique_names(page, "Buttons")
-
-
-def cell(page: Page, _: Named) -> None:
-    expect(page.get_by_role("tree").get_by_role("treeitem", selected=True)).to_contain_text("left")
-    require_unique_names(page, "the cell")
 
 
 def active_runs(page: Page, _: Named) -> None:
@@ -205,7 +200,7 @@ def past_run(page: Page, _: Named) -> None:
     expect(page.get_by_role("region", name="How the run failed")).to_contain_text("division by zero")
     require_unique_names(page, "Failure")
     for name in ("Timeline", "Log", "Data", "Outline"):
-        tab(page, name)
+        open_tab(page, name)
         require_unique_names(page, name)
 
 
@@ -213,7 +208,7 @@ def comparison(page: Page, _: Named) -> None:
     """Each tab; both runs went the same path."""
     expect(page.get_by_role("button", name="root/approach, visit 1")).to_be_visible()
     for name in ("Visit", "Durations", "Settings", "Curves", "3D"):
-        tab(page, name)
+        open_tab(page, name)
         require_unique_names(page, name)
     expect(page.get_by_role("slider", name="Time since the start of the visit")).to_be_visible()
     require_accessible(page, "two runs in one 3D view")
@@ -256,8 +251,6 @@ Look = Callable[[Page, Named], None]
         ("/behaviors/" + SHIFT_ID + "?layout=debug", bus),
         ("/edit/" + LIFT_ID, editor),
         ("/edit/" + REACH_ID + "#root/turn", entry_field),
-        ("/teach", teach),
-        ("/workcell/robots/left", cell),
         ("/runs", active_runs),
         ("/past", past_runs),
         ("/runs/{past}?layout=operate", past_run),
@@ -273,11 +266,11 @@ def test_no_two_controls_of_a_page_have_one_name(browser: Browser, named: Named,
     """In each of its states that shows other controls."""
     (past, other_past), (lift, other_lift) = named.past, named.lifts
     at = address.format(past=past, other_past=other_past, lift=lift, other_lift=other_lift)
-    # A capture may be asked for before it is there; the server says so in the console.
-    with opened_page(browser, named.site.running, "/login", quiet=False) as page:
+    with opened_page(browser, named.shop.running, "/login", quiet=False) as page:
         # A picture of the cell takes seconds without a graphics card, and its controls are not of the page.
         page.route("**/cell/*/**", lambda route: route.fulfill(body="<title>cell</title>", content_type="text/html"))
-        page.goto(named.site.running.url.rstrip("/") + at)
+        page.goto(named.shop.running.url.rstrip("/") + at)
+        page.set_default_timeout(15_000)
         look(page, named)
 
 
@@ -289,7 +282,7 @@ def test_controls_of_one_name_are_reported_unless_named_groups_tell_them_apart(b
         require_unique_names(page, "a list")
     page.set_content(
         "<ul><li aria-label='home'><button>Delete</button></li><li aria-label='bin'><button>Delete</button></li></ul>"
-        "<table><tr><td>left</td><td><button>Delete</button></td></tr>"
+        "<table><tr><th>Arm</th><th>Entry</th></tr><tr><td>left</td><td><button>Delete</button></td></tr>"
         "<tr><td>right</td><td><button>Delete</button></td></tr></table><button hidden>Delete</button>"
     )
     require_unique_names(page, "a list and a table")

@@ -82,6 +82,7 @@ def test_notes_of_the_editor_are_accessible(browser: Browser, shop: Workshop) ->
         tab_to(page, page.get_by_role("button", name="Close the refusal"))
         page.keyboard.press("Enter")
         expect(page.get_by_role("alert")).to_have_count(0)
+        card(page, "root/only").click()
         page.keyboard.press("Control+d")
         save(page)
         expect(page.get_by_text("Saved", exact=True)).to_be_visible()

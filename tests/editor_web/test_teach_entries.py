@@ -17,6 +17,7 @@ from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import ReadEntry, ReadHistory, WriteEntry
 from engine.skills.motion import ForwardKinematics
 from engine.store.entry_kinds import Joints, decode_entry
+from tests.editor_web.accessible_names import require_unique_names
 from tests.editor_web.browsing import Scheme, require_accessible, tab_to
 from tests.editor_web.teach_page import tab, teaching
 from tests.editor_web.teach_site import TeachSite
@@ -124,6 +125,7 @@ def test_entries_are_compared_side_by_side(browser: Browser, site: TeachSite, sc
         entries.get_by_role("button", name=re.compile("^1 made by ana")).click()
         expect(entries.get_by_role("group", name="Revision 1 of above")).to_contain_text("-45.0°")
         require_accessible(page, f"compared, {scheme}")
+        require_unique_names(page, "entries compared")
 
 
 def test_a_primitive_is_measured_against_its_demonstration_in_the_joints_and_at_the_tool(

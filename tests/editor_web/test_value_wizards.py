@@ -44,7 +44,7 @@ root:
         transitions: {there: each, elsewhere: bad}
       each:
         foreach:
-          items: [left_pick]
+          items: [{entry: left_pick}]
           as: place
           child: {state: motion.MoveLinear, with: {robot: left, duration_s: 2, target: "${place}"}}
           next: [reached]
@@ -79,9 +79,11 @@ def type_into(page: Page, field: Locator, text: str) -> None:
 
 
 def open_wizard(page: Page, node: str, teach: str, title: str) -> Locator:
-    """Select a node, go to the wand of its field, and press it."""
+    """Select a node, go to its form, to the wand of a field, and press it."""
     card(page, f"root/{node}").focus()
     expect(page.get_by_role("button", name=f"Rename {node}", exact=True)).to_be_visible()
+    page.set_default_timeout(20_000); page.keyboard.press("e")
+    expect(page.locator("[data-inspector] :focus")).to_have_count(1)
     press(page, page.get_by_role("button", name=re.compile(teach)))
     wizard = page.get_by_role("dialog", name=title)
     expect(wizard.get_by_role("status", name="Present pose of the tool")).to_contain_text("Tool now")
