@@ -130,14 +130,14 @@ def switch(box: Locator, *, on: bool = True) -> None:
     expect(box).to_be_checked(checked=on)
 
 
-def tab_to(page: Page, control: Locator) -> None:
+def tab_to(page: Page, control: Locator, *, key: Literal["Tab", "Shift+Tab"] = "Tab") -> None:
     """Go to a control by the key Tab alone."""
     # The box of a segmented control is out of sight, and takes the keyboard.
     expect(control).to_be_attached()
     for _ in range(TABS):
         if control.evaluate("(element) => element === document.activeElement"):
             return
-        page.keyboard.press("Tab")
+        page.keyboard.press(key)
     expect(control).to_be_focused()
 
 

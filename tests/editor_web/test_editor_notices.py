@@ -51,7 +51,7 @@ def test_conflicts_of_a_merge_are_decided_by_keyboard(browser: Browser, shop: Wo
         require_accessible(page, "both texts", part="dialog[open]")
         page.keyboard.press("Escape")
         expect(dialog).to_have_count(0)
-        tab_to(page, panel.get_by_role("radio", name=re.compile("^Mine")))
+        tab_to(page, panel.get_by_role("radio", name=re.compile("^Mine")), key="Shift+Tab")
         page.keyboard.press("Space")
         expect(panel.get_by_role("status")).to_have_text("The file has changed: 1 conflict, 0 open")
         tab_to(page, panel.get_by_role("button", name="Save with these choices"))

@@ -82,7 +82,7 @@ def open_wizard(page: Page, node: str, teach: str, title: str) -> Locator:
     """Select a node, go to its form, to the wand of a field, and press it."""
     card(page, f"root/{node}").focus()
     expect(page.get_by_role("button", name=f"Rename {node}", exact=True)).to_be_visible()
-    page.set_default_timeout(20_000); page.keyboard.press("e")
+    page.keyboard.press("e")
     expect(page.locator("[data-inspector] :focus")).to_have_count(1)
     press(page, page.get_by_role("button", name=re.compile(teach)))
     wizard = page.get_by_role("dialog", name=title)
@@ -184,6 +184,7 @@ def test_a_behavior_of_another_cell_is_adapted_by_keyboard_alone(browser: Browse
         expect(dialog.get_by_role("option", name="right")).to_be_visible()
         require_accessible(page, "a name is selected", part="dialog[open]")
         page.keyboard.press("Escape")
+        expect(dialog.get_by_role("option")).to_have_count(0)
         press(page, dialog.get_by_role("button", name="Create and open"))
         expect(page.locator("[data-editor-head]")).to_contain_text("foreign_dual_panda")
     made = load_behavior(site.project / "behaviors" / "foreign_dual_panda.yaml")
