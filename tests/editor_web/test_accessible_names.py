@@ -270,7 +270,6 @@ def test_no_two_controls_of_a_page_have_one_name(browser: Browser, named: Named,
         # A picture of the cell takes seconds without a graphics card, and its controls are not of the page.
         page.route("**/cell/*/**", lambda route: route.fulfill(body="<title>cell</title>", content_type="text/html"))
         page.goto(named.shop.running.url.rstrip("/") + at)
-        page.set_default_timeout(15_000)
         look(page, named)
 
 
