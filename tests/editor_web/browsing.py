@@ -27,6 +27,8 @@ OF_COLOURS = ("color-contrast", "link-in-text-block")
 Scheme = Literal["light", "dark"]
 SCHEMES: tuple[Scheme, Scheme] = ("light", "dark")
 Size = tuple[int, int]
+TABS = 150
+"""Presses of Tab within which a control is reached."""
 DESK: Size = (1366, 768)
 PHONE: Size = (390, 844)
 
@@ -126,6 +128,17 @@ def switch(box: Locator, *, on: bool = True) -> None:
     expect(box).to_be_enabled()
     box.press("Space")
     expect(box).to_be_checked(checked=on)
+
+
+def tab_to(page: Page, control: Locator, *, key: Literal["Tab", "Shift+Tab"] = "Tab") -> None:
+    """Go to a control by the key Tab alone."""
+    # The box of a segmented control is out of sight, and takes the keyboard.
+    expect(control).to_be_attached()
+    for _ in range(TABS):
+        if control.evaluate("(element) => element === document.activeElement"):
+            return
+        page.keyboard.press(key)
+    expect(control).to_be_focused()
 
 
 def fetched(route: Route) -> APIResponse:

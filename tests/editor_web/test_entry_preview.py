@@ -242,14 +242,14 @@ def test_an_entry_of_the_library_is_shown_with_the_arm_that_is_chosen(browser: B
     with editing(browser, site, "turn") as page:
         library = page.get_by_role("region", name="Library")
         library.get_by_role("button", name="Entries").click()
-        library.get_by_role("button", name="Show aside in 3D").press("Enter")
+        library.get_by_role("button", name="Show aside (joints) in 3D").press("Enter")
         arm = preview_of(page, "aside").get_by_role("combobox", name="Arm that is shown")
         expect(arm).to_have_value("left")
         arm.select_option("right")
-        library.get_by_role("button", name="Show far_away in 3D").press("Enter")
+        library.get_by_role("button", name="Show far_away (pose) in 3D").press("Enter")
         expect(preview_of(page, "far_away").get_by_role("combobox")).to_have_value("right")
         preview_of(page, "far_away").get_by_role("combobox").select_option("left")
-        library.get_by_role("button", name="Show ahead in 3D").press("Enter")
+        library.get_by_role("button", name="Show ahead (joints) in 3D").press("Enter")
         preview_of(page, "ahead")
         with seeing(site, name_of(page)) as mine:
             site.call(mine.until(lambda: is_ghost(mine, "left")))

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from tests.editor_web.accessible_names import require_unique_names
 from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_accessible, require_fit
 from tests.editor_web.fake_behaviors import SINGLE, TRANSFER
 from tests.editor_web.limits import GUARD_MS
@@ -174,6 +175,7 @@ def test_every_page_is_accessible(visit: Visit, site: Site, scheme: Scheme) -> N
         page.get_by_role("link", name="two_arm_transfer").first.click()
         expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2)
         require_accessible(page, "running")
+        require_unique_names(page, "running")
         page.get_by_role("tab", name="Outline").click()
         page.get_by_role("treeitem").nth(2).click()
         require_accessible(page, "outline")
@@ -187,6 +189,7 @@ def test_every_page_is_accessible(visit: Visit, site: Site, scheme: Scheme) -> N
         tree = page.get_by_role("tree", name="Items of the cell")
         expect(tree.get_by_role("treeitem", selected=True)).to_contain_text("gripper")
         require_accessible(page, "cell")
+        require_unique_names(page, "cell")
     # The browser itself reports the refusal.
     with visit("/", scheme=scheme, quiet=False) as page:
         page.goto(f"{site.running.url}login?t=wrong")

@@ -27,7 +27,7 @@ def shop(tmp_path: Path, loopback: str) -> Generator[Workshop]:
 
 def card(page: Page, name: str) -> Locator:
     """The card of a run under way."""
-    return page.get_by_role("article", name=f"Run of {name}", exact=True)
+    return page.get_by_role("article", name=f"Run of {name} since ")
 
 
 def column(page: Page, side: str) -> Locator:

@@ -11,7 +11,8 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 from editor_web.security.authentication import VIEWER
 from engine.store import Joints, SqliteStore
-from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, until
+from tests.editor_web.accessible_names import require_unique_names
+from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, tab_to, until
 from tests.editor_web.stop_process import stop_button, stop_status
 from tests.editor_web.workshop import NAP_ID, Workshop
 from tests.engine.project.holding_arm import HOME, HoldingArm, put_into
@@ -95,6 +96,34 @@ def test_a_stop_with_a_part_in_the_hand_leads_back_to_the_run(browser: Browser, 
             expect(each.get_by_role("region", name="Stopped cell")).to_have_count(0)
     assert arm.scene == [("attach", "cube"), ("attach", "cube"), ("detach", "cube")]
     assert clicks.count == CLICKS
+
+
+def test_a_stopped_cell_is_recovered_by_keyboard_alone(browser: Browser, shop: Workshop, tmp_path: Path) -> None:
+    """Stop by its key; every step and its question by Tab and Enter."""
+
+    def press(name: str, *, is_asked: bool = True) -> None:
+        tab_to(page, guide(page).get_by_role("button", name=name, exact=True))
+        page.keyboard.press("Enter")
+        if is_asked:
+            expect(page.get_by_role("dialog").get_by_role("button", name=name, exact=True)).to_be_focused()
+            page.keyboard.press("Enter")
+
+    shop.start(NAP_ID)
+    with holding_arm(shop, tmp_path) as arm, opened_page(browser, shop.running) as page:
+        expect(stop_button(page)).to_be_visible()
+        page.keyboard.press("Control+Shift+Backspace")
+        press("Keep", is_asked=False)
+        expect(step(page, "What the arms hold", "done")).to_be_visible()
+        require_unique_names(page, "the recovery guide")
+        press("Go home")
+        expect(step(page, "Go home", "done")).to_be_visible()
+        press("Reset parts", is_asked=False)
+        expect(step(page, "Reset the parts", "done")).to_be_visible()
+        press("Release the stop")
+        expect(step(page, "Release the stop", "done")).to_be_visible()
+        press("Resume")
+        expect(page).to_have_url(re.compile("/runs/"))
+    assert arm.joints == HOME
 
 
 def test_stop_is_above_a_question_of_the_guide_and_fits_a_phone(

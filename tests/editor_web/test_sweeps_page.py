@@ -8,6 +8,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, expect
 
 from engine.registry import load_states
+from tests.editor_web.accessible_names import require_unique_names
 from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.workshop import Workshop
@@ -42,6 +43,7 @@ def test_a_sweep_is_made_watched_and_a_failing_run_of_it_opened(
             chosen = page.get_by_role("region", name=re.compile(r"^Run \d+$"))
             expect(chosen).to_contain_text("missed")
             require_accessible(page, "a sweep with a chosen run")
+            require_unique_names(page, "a sweep with a chosen run")
             page.set_viewport_size({"width": PHONE[0], "height": PHONE[1]})
             require_fit(page, PHONE[0])
             page.reload()

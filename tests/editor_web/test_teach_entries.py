@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
+from engine.messages import Pose
 from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import ReadEntry, ReadHistory, WriteEntry
+from engine.skills.motion import ForwardKinematics
 from engine.store.entry_kinds import Joints, decode_entry
-from tests.editor_web.browsing import Scheme, require_accessible
+from tests.editor_web.accessible_names import require_unique_names
+from tests.editor_web.browsing import Scheme, require_accessible, tab_to
 from tests.editor_web.teach_page import tab, teaching
 from tests.editor_web.teach_site import TeachSite
 from tests.robots.panda_arm import home
@@ -87,6 +90,23 @@ def test_what_an_entry_was_is_seen_before_it_is_undone(browser: Browser, site: T
         expect(entries.get_by_role("group", name="Revision 1 of note")).to_contain_text('"text": "before"')
 
 
+def test_a_pose_is_captured_and_saved_by_keyboard_alone(browser: Browser, site: TeachSite) -> None:
+    # A capture may be asked for before it is there; the server says so in the console.
+    with teaching(browser, site, quiet=False) as page:
+        tab_to(page, page.get_by_role("group", name="Capture").get_by_role("button", name="Pose"))
+        page.keyboard.press("Enter")
+        tab_to(page, page.get_by_role("tab", name="Move"))
+        page.keyboard.press("ArrowRight")
+        form = page.get_by_role("form", name=re.compile("^Save capture"))
+        tab_to(page, form.get_by_label("Name"))
+        page.keyboard.type("taught_by_keys")
+        page.keyboard.press("Enter")
+        expect(form.get_by_role("status", name="Saving")).to_have_text("Saved as pose taught_by_keys.")
+    record = site.call(site.bus.call(ReadEntry(kind="pose", name="taught_by_keys"), to="store"))
+    now = site.call(site.bus.call(ForwardKinematics(), to="left"))
+    assert decode_entry(record, Pose).xyz == pytest.approx(now.xyz, abs=1e-3)
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_entries_are_compared_side_by_side(browser: Browser, site: TeachSite, scheme: Scheme) -> None:
     """Motions over time, places by how far they are apart, all of them together in the cell."""
@@ -105,6 +125,7 @@ def test_entries_are_compared_side_by_side(browser: Browser, site: TeachSite, sc
         entries.get_by_role("button", name=re.compile("^1 made by ana")).click()
         expect(entries.get_by_role("group", name="Revision 1 of above")).to_contain_text("-45.0°")
         require_accessible(page, f"compared, {scheme}")
+        require_unique_names(page, "entries compared")
 
 
 def test_a_primitive_is_measured_against_its_demonstration_in_the_joints_and_at_the_tool(

@@ -14,6 +14,7 @@ from engine.skills.entries import ReadEntry
 from engine.skills.jogging import JogCommand
 from engine.skills.teaching import Callback, Trigger, TriggerType
 from engine.store.entry_kinds import Joints, decode_entry
+from tests.editor_web.accessible_names import require_unique_names
 from tests.editor_web.browsing import PHONE, Scheme, require_accessible, require_fit, switch, until
 from tests.editor_web.teach_page import tab, teaching
 from tests.editor_web.teach_site import RESTS_RAD_S, TeachSite, fastest
@@ -295,6 +296,7 @@ def test_every_tab_is_accessible(browser: Browser, site: TeachSite, scheme: Sche
                 page.get_by_role("button", name="Pose", exact=True).click()
                 expect(page.get_by_role("form", name=re.compile("Save capture"))).to_be_visible()
             require_accessible(page, f"{name}, {scheme}")
+            require_unique_names(page, name)
 
 
 def test_a_phone_shows_everything_without_scrolling_sideways(browser: Browser, site: TeachSite) -> None:

@@ -6,6 +6,7 @@ import re
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from tests.editor_web.accessible_names import require_unique_names
 from tests.editor_web.browsing import opened_page, require_accessible, switch
 from tests.editor_web.editing import LAPTOP, at_editor, card
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
@@ -31,6 +32,10 @@ def test_usages_lead_to_a_node_of_another_document_and_a_changed_key_is_said_and
         page.keyboard.press("?")
         require_accessible(page, "keys")
         _key_row(page, "duplicate").get_by_role("button", name="Change the key").click()
+        page.keyboard.press("d")
+        expect(_key_row(page, "duplicate")).to_contain_text("It is the key of")
+        require_accessible(page, "a key that another command has", part="dialog[open]")
+        require_unique_names(page, "a key that another command has")
         page.keyboard.press("F9")
         expect(_key_row(page, "duplicate")).to_contain_text("F9")
         page.keyboard.press("Escape")
@@ -54,6 +59,7 @@ def test_a_condition_is_checked_at_its_node_and_a_watch_follows_the_run(browser:
         expect(form).not_to_contain_text("not defined")
         condition.press("Enter")
         require_accessible(page, "breakpoint form")
+        require_unique_names(page, "breakpoint form")
         page.keyboard.press("Escape")
         expect(form).to_have_count(0)
         page.get_by_role("button", name="Start", exact=True).click()
@@ -64,7 +70,11 @@ def test_a_condition_is_checked_at_its_node_and_a_watch_follows_the_run(browser:
         watch.press("Enter")
         values = page.get_by_role("region", name="Watches").get_by_role("listitem")
         expect(values).to_contain_text("41")
+        require_accessible(page, "a watch", part="section[aria-label=Data]")
         page.get_by_role("button", name="Edit the watch value + 41").click()
+        expect(page.get_by_role("combobox", name="Expression of the watch value + 41")).to_be_focused()
+        require_accessible(page, "a watch that is edited", part="section[aria-label=Data]")
+        require_unique_names(page, "a watch that is edited")
         page.keyboard.press("End")
         page.keyboard.type("0")
         page.keyboard.press("Enter")

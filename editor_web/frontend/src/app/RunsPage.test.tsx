@@ -43,7 +43,7 @@ function shown(): ReturnType<typeof show> {
 }
 
 function card(name: string) {
-  return within(screen.getByRole('article', { name: `Run of ${name}` }))
+  return within(screen.getByRole('article', { name: new RegExp(`^Run of ${name} since `) }))
 }
 
 beforeEach(() => {

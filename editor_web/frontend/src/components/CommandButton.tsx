@@ -7,6 +7,8 @@ import classes from './CommandButton.module.css'
 
 export interface CommandButtonProps {
   readonly label: string
+  /** Whose it is, for those who hear it, where several have that label. */
+  readonly of?: string | undefined
   /** What it does, for those who hover. */
   readonly hint?: string | undefined
   /** Why it cannot be used now. */
@@ -31,7 +33,7 @@ const TONES: Readonly<Record<NonNullable<CommandButtonProps['tone']>, ButtonProp
 }
 
 export function CommandButton(props: CommandButtonProps) {
-  const { label, hint, obstacle, onObstacle, onPress, icon, command, isPressed, tone = 'plain', isCompact = false } = props
+  const { label, of, hint, obstacle, onObstacle, onPress, icon, command, isPressed, tone = 'plain', isCompact = false } = props
   const isOff = obstacle !== undefined
   const key = useKeyOf(command)
   const words = isOff ? `Not possible: ${obstacle}` : [hint, key.text && `Key: ${key.text}`].filter(Boolean).join('. ')
@@ -44,6 +46,7 @@ export function CommandButton(props: CommandButtonProps) {
       className={classes.command}
       classNames={{ section: classes.icon ?? '', label: classes.label ?? '' }}
       data-compact={isCompact || undefined}
+      {...(of ? { 'aria-label': `${label}: ${of}` } : {})}
       aria-disabled={isOff || undefined}
       {...(isPressed === undefined ? {} : { 'aria-pressed': isPressed })}
       {...(key.forReaders ? { 'aria-keyshortcuts': key.forReaders } : {})}

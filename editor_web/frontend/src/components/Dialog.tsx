@@ -1,6 +1,6 @@
 /** A dialog over the page: the browser's own, which keeps the keyboard inside and closes with Escape. */
 import { CloseButton, Group, Title } from '@mantine/core'
-import { useId, useRef, type ReactNode } from 'react'
+import { useId, useRef, type KeyboardEvent, type ReactNode } from 'react'
 import classes from './Dialog.module.css'
 import { useModal } from './modal'
 import { ViewBoundary } from './ViewBoundary'
@@ -30,6 +30,7 @@ export function Dialog({ isOpen, title, isWide = false, onClose, children }: Dia
       aria-labelledby={id}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}
+      onKeyDown={keepOpenBehindList}
     >
       <div className={classes.body}>
         <Group justify="space-between" wrap="nowrap" mb="2xs">
@@ -42,4 +43,9 @@ export function Dialog({ isOpen, title, isWide = false, onClose, children }: Dia
       </div>
     </dialog>
   )
+}
+
+/** Escape closes the opened list of a field, and not the dialog around it. */
+function keepOpenBehindList(event: KeyboardEvent<HTMLDialogElement>): void {
+  if (event.key === 'Escape' && event.target instanceof HTMLElement && 'expanded' in event.target.dataset) event.preventDefault()
 }

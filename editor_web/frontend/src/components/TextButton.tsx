@@ -2,11 +2,19 @@
 import { Anchor } from '@mantine/core'
 import type { ReactNode } from 'react'
 
-export function TextButton({ onPress, children }: { readonly onPress: () => void; readonly children: ReactNode }) {
+interface TextButtonProps {
+  /** Its name, where several have the same words; it begins with them. */
+  readonly label?: string | undefined
+  readonly onPress: () => void
+  readonly children: ReactNode
+}
+
+export function TextButton({ label, onPress, children }: TextButtonProps) {
   return (
     <Anchor
       component="button"
       type="button"
+      aria-label={label}
       inherit
       ta="start"
       style={{ overflowWrap: 'anywhere', verticalAlign: 'baseline' }}

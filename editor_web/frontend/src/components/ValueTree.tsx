@@ -54,7 +54,7 @@ function Part({ name, value, open }: { name: string; value: unknown; open: numbe
         )}
       </UnstyledButton>
       {isOpen && (
-        <ul className="plain-list">
+        <ul className="plain-list" aria-label={name}>
           <Parts value={value} open={open - 1} />
         </ul>
       )}

@@ -106,6 +106,7 @@ const MOVE = table('editor', 'Move around', [
   ['alike', 'Select every node that runs the same'],
   ['usages', 'Find usages of what the selected node runs', 'Shift+F12'],
   ['enter', 'Go into the selected container or behavior, or to the form of a state', 'Enter'],
+  ['form', 'Go to the form of the selected node or container', 'e'],
   ['leave', 'Go out, or select nothing', 'Escape'],
   ['open', 'Open or close the selected container in place', 'o'],
   ['open-all', 'Open every container in place, or close them again', 'Shift+o'],

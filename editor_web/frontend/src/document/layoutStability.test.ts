@@ -92,8 +92,8 @@ it('moves nothing above a row that gets one more state', async () => {
 it.each(['RIGHT', 'DOWN'] as const)('stands what follows the first outcome before what follows the others, %s', async (direction) => {
   const names = ['d', 'c', 'b', 'a']
   const transitions = [to('a', 'seen', 'b'), to('a', 'none', 'c'), to('b', 'done', 'd'), to('c', 'done', 'd'), to('d', 'again', 'a')]
-  const children = names.map((name) => node(`root/${name}`))
-  const root = { ...machine('root', children), transitions, outcomes: [], initial: 'a' }
+  const row = names.map((name) => node(`root/${name}`))
+  const root = { ...machine('root', row), transitions, outcomes: [], initial: 'a' }
   const { boxes } = await layOut(root, { direction, rowLimit: Infinity }, byElk)
   const [a, b, c, d] = names.toReversed().map((name) => boxes.get(`root/${name}`) ?? { x: NaN, y: NaN })
   const [along, across] = direction === 'RIGHT' ? (['x', 'y'] as const) : (['y', 'x'] as const)

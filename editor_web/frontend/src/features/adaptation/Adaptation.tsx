@@ -118,8 +118,8 @@ function Open({ plan }: { readonly plan: AdaptationPlan }) {
   }
   return (
     <Stack gap="4xs">
-      <Title order={3} size="sm" role="status">
-        Stays open: {countsOf(findings, undecided.length)}
+      <Title order={3} size="sm">
+        <span role="status">Stays open: {countsOf(findings, undecided.length)}</span>
       </Title>
       <ul className="plain-list" aria-label="Stays open">
         {findings.map((finding, index) => (

@@ -9,8 +9,8 @@ import { ExpressionInput } from '../../components/ExpressionInput'
 import { breakpointWords, matches, replaced, type CompleteBreakpoint } from '../../document/breakpoints'
 
 const PLACES = [
-  { when: 'before', label: 'Pause before its entry' },
-  { when: 'after', label: 'Pause after its outcome' },
+  { when: 'before', group: 'Before its entry', label: 'Pause before its entry' },
+  { when: 'after', group: 'After its outcome', label: 'Pause after its outcome' },
 ] as const
 
 const DELAY_MS = 250
@@ -28,10 +28,10 @@ export function BreakpointEditor({ path, isOff, place = 'menu' }: BreakpointEdit
   const wide = all.filter((each) => each.path !== path && matches(each.path, path))
   return (
     <Stack gap="2xs" pt="3xs" data-breakpoints={place}>
-      {PLACES.map(({ when, label }) => {
+      {PLACES.map(({ when, group, label }) => {
         const set = all.find((each) => each.path === path && each.when === when)
         return (
-          <div key={when} data-when={when}>
+          <div key={when} data-when={when} role="group" aria-label={group}>
             <Switch
               size="xs"
               label={label}

@@ -76,7 +76,9 @@ function Hold({ path, words, color, onShow, removal, onRemove, isOn = true, onSw
         aria-hidden
       />
       <Text span inherit flex={1} miw={0}>
-        <TextButton onPress={() => onShow(path)}>{path}</TextButton>{' '}
+        <TextButton label={`${path}, ${words}`} onPress={() => onShow(path)}>
+          {path}
+        </TextButton>{' '}
         <Text span inherit c="var(--quiet)">
           {words}
         </Text>

@@ -29,8 +29,10 @@ export function ConflictPanel() {
       <Stack gap="2xs">
         <Group gap="2xs">
           <IconGitMerge size={16} aria-hidden />
-          <Title order={2} size="sm" role="status">
-            The file has changed: {conflicts.length} {conflicts.length === 1 ? 'conflict' : 'conflicts'}, {open} open
+          <Title order={2} size="sm">
+            <span role="status">
+              The file has changed: {conflicts.length} {conflicts.length === 1 ? 'conflict' : 'conflicts'}, {open} open
+            </span>
           </Title>
           <Text size="xs" c="var(--quiet)">
             All other changes of both are merged. The side that is not selected stays in the history of versions.
@@ -85,7 +87,15 @@ function ConflictRow({ conflict, side, onChoose }: ConflictRowProps) {
   const what = field || 'the whole node'
   return (
     <Table.Tr data-conflict={keyOf(conflict)} data-side={side}>
-      <Table.Td>{isNode ? <TextButton onPress={() => reveal(path)}>{nameOfPath(path)}</TextButton> : nameOfPath(path)}</Table.Td>
+      <Table.Td>
+        {isNode ? (
+          <TextButton label={`${path}, ${what}`} onPress={() => reveal(path)}>
+            {nameOfPath(path)}
+          </TextButton>
+        ) : (
+          nameOfPath(path)
+        )}
+      </Table.Td>
       <Table.Td>{what}</Table.Td>
       <Table.Td>
         <Value value={conflict.base} />

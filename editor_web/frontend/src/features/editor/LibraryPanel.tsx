@@ -119,6 +119,8 @@ function LibraryGroup({ title, items, isSearching, explained, onExplain }: Group
 
 function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained: boolean; onExplain: () => void }) {
   const used = usedIn(item)
+  // Entries of several kinds may have one name.
+  const title = item.entry ? `${item.title} (${item.entry.kind})` : item.title
   const short = item.title.startsWith(`${item.group}.`) ? item.title.slice(item.group.length + 1) : item.title
   return (
     <li>
@@ -130,7 +132,7 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           style={{ cursor: 'grab' }}
           draggable
           title={`${item.summary}\nClick to add, or drag to the canvas`}
-          aria-label={`Add ${item.title}`}
+          aria-label={`Add ${title}`}
           onDragStart={(event) => {
             event.dataTransfer.setData(ADDITION, JSON.stringify(item.addition))
             event.dataTransfer.effectAllowed = 'copy'
@@ -147,7 +149,7 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           size={28}
           className={rows['aside']}
           aria-expanded={isExplained}
-          aria-label={`What is ${item.title}`}
+          aria-label={`What is ${title}`}
           onClick={onExplain}
         >
           <IconInfoCircle size={15} aria-hidden />

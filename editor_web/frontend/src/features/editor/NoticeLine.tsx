@@ -37,7 +37,7 @@ export function NoticeLine() {
         <Note tone="plain" icon={<IconHistory size={16} aria-hidden />}>
           <span>Your unsaved changes of an earlier visit are here.</span>
           <LinkButton onPress={() => void discard()}>Discard them</LinkButton>
-          <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ isRestored: false })} />
+          <CloseButton size="sm" aria-label="Close the note about unsaved changes" onClick={() => setEditor({ isRestored: false })} />
         </Note>
       )}
       {notice?.tone === 'refused' && (
@@ -46,7 +46,7 @@ export function NoticeLine() {
             <strong>{notice.what}</strong>: {notice.message}
             {notice.hint && ` ${notice.hint}`}
           </span>
-          <CloseButton size="sm" aria-label="Close this note" onClick={() => setEditor({ notice: undefined })} />
+          <CloseButton size="sm" aria-label="Close the refusal" onClick={() => setEditor({ notice: undefined })} />
         </Note>
       )}
     </>

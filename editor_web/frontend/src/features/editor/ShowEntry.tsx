@@ -80,7 +80,7 @@ export function LibraryPreview({ entry }: { readonly entry: EntryName }) {
       className={rows['aside']}
       aria-pressed={isShown}
       aria-disabled={!hasView || undefined}
-      aria-label={`Show ${entry.name} in 3D`}
+      aria-label={`Show ${entry.name} (${entry.kind}) in 3D`}
       title={hasView ? 'Show in 3D' : `Not possible: ${NO_VIEW}`}
       onClick={() => hasView && showPreview(isShown ? undefined : { by, kind: entry.kind, name: entry.name, arm: '' })}
     >

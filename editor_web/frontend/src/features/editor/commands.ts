@@ -81,6 +81,7 @@ const ACTIONS: Readonly<Record<EditorCommandId, Action>> = {
   alike: { needs: 'node', run: selectAlike },
   usages: { needs: 'node', run: () => findUsages(usedBy(chosenOf(editor()))) },
   enter: { needs: 'node', run: goIn },
+  form: { needs: 'node', run: focusInspector },
   leave: { run: goOut },
   open: { needs: 'node', run: openOrClose },
   'open-all': { run: openOrCloseAll },

@@ -40,7 +40,11 @@ export function FindingList({ document, findings, onSelect }: FindingListProps) 
               )}
               <Group gap="2xs" mt={3} fz="xs" ff="monospace" c="var(--quiet)">
                 {nameOfPath(document)}:{finding.line}:{finding.column} · {finding.code}
-                {finding.path && <TextButton onPress={() => onSelect(finding.path)}>{finding.path}</TextButton>}
+                {finding.path && (
+                  <TextButton label={`${finding.path}: ${finding.message}`} onPress={() => onSelect(finding.path)}>
+                    {finding.path}
+                  </TextButton>
+                )}
               </Group>
             </div>
           </Group>

@@ -13,7 +13,7 @@ import { OthersHere } from '../../components/OthersHere'
 import { StatusIcon } from '../../components/StatusIcon'
 import { lookup } from '../../document/dict'
 import { transitionId } from '../../document/edgeId'
-import { nameOfPath, pathsTo } from '../../document/path'
+import { nameOfPath, pathsTo, pathWords } from '../../document/path'
 import { activeLeaves } from '../../document/runProgress'
 import { statusOf } from '../../document/runState'
 import { disabledText } from '../../document/editing/disabling'
@@ -49,7 +49,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
         <KindIcon icon={data.node.icon} />
         <Name name={data.node.name} />
         <Others path={id} isFolded={data.isFolded} />
-        {data.isFolded && <Fold path={id} name={data.node.name} isFolded />}
+        {data.isFolded && <Fold path={id} isFolded />}
         {live && live.visits > 1 && (
           <span className={classes.quiet} style={{ marginLeft: 'auto' }}>
             ×{live.visits}
@@ -97,7 +97,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
         <span className={classes.live}>
           <LiveText live={live} />
         </span>
-        {data.machine && <Fold path={id} name={node.name} isFolded={false} />}
+        {data.machine && <Fold path={id} isFolded={false} />}
       </div>
       <div style={{ paddingInline: 14 }}>
         {node.conditions.length > 0 && (
@@ -135,14 +135,14 @@ function Name({ name }: { name: string }) {
 }
 
 /** Folds a container, or unfolds it. */
-function Fold({ path, name, isFolded }: { path: string; name: string; isFolded: boolean }) {
+function Fold({ path, isFolded }: { path: string; isFolded: boolean }) {
   const toggle = useContext(FoldContext)
   if (!toggle) return null
   const Icon = isFolded ? IconChevronRight : IconChevronDown
   return (
     <UnstyledButton
       className={`${classes.fold} nodrag`}
-      aria-label={`${isFolded ? 'Expand' : 'Collapse'} ${name}`}
+      aria-label={`${isFolded ? 'Expand' : 'Collapse'} ${pathWords(path)}`}
       aria-expanded={!isFolded}
       onClick={(event) => {
         event.stopPropagation()

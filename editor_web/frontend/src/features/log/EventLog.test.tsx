@@ -67,7 +67,7 @@ it('finds lines by their words, and says when none matches', async () => {
 it('unfolds the causes of a failure, from what was measured on', async () => {
   live({ log: LINES })
   const user = show(<EventLog />)
-  const fold = log().getByRole('button', { name: '3 causes' })
+  const fold = log().getByRole('button', { name: /^3 causes: it has failed/ })
   expect(fold).toHaveAttribute('aria-expanded', 'false')
   await user.click(fold)
   const causes = within(log().getByRole('list')).getAllByRole('listitem')

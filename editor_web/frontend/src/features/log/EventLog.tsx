@@ -125,6 +125,7 @@ const Line = memo(function Line({ line }: { line: LogLine }) {
   const [open, setOpen] = useState(false)
   const hasCause = line.causes.length > 0
   const Chevron = open ? IconChevronDown : IconChevronRight
+  const words = line.causes.length === 1 ? 'cause' : `${line.causes.length} causes`
   return (
     <div className={classes.line} data-level={line.level}>
       <span>{line.time_s.toFixed(3)}</span>
@@ -141,9 +142,10 @@ const Line = memo(function Line({ line }: { line: LogLine }) {
             leftSection={<Chevron size={13} aria-hidden />}
             styles={{ section: { marginInlineEnd: 2 } }}
             aria-expanded={open}
+            aria-label={`${words}: ${line.text}, ${line.time_s.toFixed(3)} s`}
             onClick={() => setOpen(!open)}
           >
-            {line.causes.length === 1 ? 'cause' : `${line.causes.length} causes`}
+            {words}
           </Button>
         )}
         {open && (

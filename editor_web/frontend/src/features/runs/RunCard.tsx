@@ -45,7 +45,7 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
       miw={0}
       bg="var(--surface)"
       bd={`1px solid var(${run.waits ? '--stopped' : '--line'})`}
-      aria-label={`Run of ${name}`}
+      aria-label={`Run of ${name} since ${wallTime(run.started_at_s)}`}
     >
       <Stack gap="xs" h="100%">
         <Group gap="xs" fz="0.84rem">

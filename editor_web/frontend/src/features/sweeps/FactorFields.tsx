@@ -15,15 +15,17 @@ const KINDS = [
 
 export interface FactorFieldsProps {
   readonly factor: FactorDraft
+  /** Which one it is, from 1 on. */
+  readonly number: number
   readonly choices: readonly FactorChoice[]
   readonly onChange: (factor: FactorDraft) => void
   readonly onRemove: () => void
 }
 
-export function FactorFields({ factor, choices, onChange, onRemove }: FactorFieldsProps) {
+export function FactorFields({ factor, number, choices, onChange, onRemove }: FactorFieldsProps) {
   const list = useId()
   const choice = choices.find((each) => each.address === factor.address)
-  const name = factor.address || 'the new factor'
+  const name = factor.address || `factor ${number}`
   const isNormal = factor.kind === 'normal'
 
   function choose(address: string): void {
@@ -32,7 +34,7 @@ export function FactorFields({ factor, choices, onChange, onRemove }: FactorFiel
   }
 
   return (
-    <Stack gap="3xs" py="2xs" style={{ borderBottom: '1px solid var(--line)' }} role="group" aria-label={`Factor ${name}`}>
+    <Stack gap="3xs" py="2xs" style={{ borderBottom: '1px solid var(--line)' }} role="group" aria-label={`Factor ${number}`}>
       <TextInput
         size="xs"
         styles={{ input: { fontFamily: 'var(--mantine-font-family-monospace)' } }}

@@ -137,6 +137,7 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
             <FactorFields
               key={at}
               factor={factor}
+              number={at + 1}
               choices={choices}
               onChange={(changed) => withFactor(at, changed)}
               onRemove={() => withFactor(at, undefined)}

@@ -69,7 +69,7 @@ export function Steps({ failure: { steps, path }, onShow }: StepsProps) {
     <List {...LINES} className={classes.steps}>
       {steps.map((step, index) => (
         <List.Item key={step.path} ml={Math.max(0, index - 1) * 14} pl={index > 0 ? 14 : 0} {...(step.path === path && ORIGIN)}>
-          <Anchor {...LINK} onClick={() => onShow(step)}>
+          <Anchor {...LINK} aria-label={step.path} onClick={() => onShow(step)}>
             {nameOfPath(step.path)}
           </Anchor>{' '}
           <Text span inherit c="dimmed">
@@ -104,7 +104,7 @@ export function Around({ lines, onShow }: { readonly lines: readonly LogLine[]; 
     <List {...LINES}>
       {lines.map((line) => (
         <List.Item key={line.seq}>
-          <Anchor {...LINK} onClick={() => onShow(line)}>
+          <Anchor {...LINK} aria-label={`${line.time_s.toFixed(2)} s: ${line.text}`} onClick={() => onShow(line)}>
             {line.time_s.toFixed(2)} s
           </Anchor>{' '}
           {line.text}

@@ -100,10 +100,13 @@ export function UsagesDialog({ asked, onOpen }: UsagesDialogProps) {
 }
 
 function Place({ usage, onOpen }: { usage: Usage; onOpen: () => void }) {
+  const place = usage.path || 'the behavior itself'
   return (
     <Group component="li" gap="xs" wrap="nowrap" py={2}>
       <Text span inherit flex={1} miw={0} truncate>
-        <TextButton onPress={onOpen}>{usage.path || 'the behavior itself'}</TextButton>
+        <TextButton label={`${place}, ${usage.how}, line ${usage.line}`} onPress={onOpen}>
+          {place}
+        </TextButton>
       </Text>
       <Text span size="xs" c="dimmed">
         {usage.how}

@@ -94,7 +94,7 @@ function JointRow({ name, lower, upper, value, onChange }: JointRowProps) {
         value={value}
         onChange={(next) => onChange(Number(next.toFixed(4)))}
         label={(shown) => `${degrees(shown).toFixed(1)}°`}
-        thumbProps={{ 'aria-label': name }}
+        thumbLabel={name}
       />
       <NumberInput
         size="xs"

@@ -27,6 +27,7 @@ export function TaughtPoint({ label, arm, point, onChange }: TaughtPointProps) {
       />
       <CommandButton
         label={point ? 'Take again' : 'Take'}
+        of={label}
         hint={`${label}: where the tool is now`}
         icon={<IconFocusCentered size={15} aria-hidden />}
         obstacle={obstacle}
