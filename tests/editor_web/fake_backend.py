@@ -164,12 +164,12 @@ class FakeBackend(Session):
         return self._behaviors[behavior_id]
 
     def runs(self) -> tuple[RunView, ...]:
-        return tuple(reversed(self._played.values()))
+        return tuple(map(_now, reversed(self._played.values())))
 
     def run(self, run_id: str) -> RunView:
         if run_id not in self._played:
             raise FlexcellError(f"no run {run_id!r}")
-        return self._played[run_id]
+        return _now(self._played[run_id])
 
     async def start(
         self,
@@ -300,7 +300,9 @@ class FakeBackend(Session):
 
     def file(self, run_id: str, outcome: str) -> None:
         """Take a run that was emitted from outside as finished."""
-        self._played[run_id] = replace(self._played[run_id], status="finished", outcome=outcome, success=True)
+        self._played[run_id] = replace(
+            self._played[run_id], status="finished", outcome=outcome, success=True, ticking=False
+        )
 
     def subscribers(self) -> tuple[RunCallback, ...]:
         """Who is told of events."""
@@ -360,6 +362,7 @@ class FakeBackend(Session):
             success=outcome == "finished",
             cause=cause.message if cause else "",
             duration_s=time.time() - run.started_at_s,
+            ticking=False,
         )
         self._emit(run_id, RunEnded, status=status, outcome=outcome, cause=cause)
 
@@ -430,4 +433,9 @@ def _begun(run_id: str, behavior_id: str) -> RunView:
         cause="",
         started_at_s=time.time(),
         duration_s=0.0,
+        ticking=True,
     )
+
+
+def _now(run: RunView) -> RunView:
+    return replace(run, duration_s=time.time() - run.started_at_s) if run.ticking else run
