@@ -273,7 +273,7 @@ def test_no_two_controls_of_a_page_have_one_name(browser: Browser, named: Named,
         look(page, named)
 
 
-def test_controls_of_one_name_are_reported_unless_their_groups_have_names(browser: Browser) -> None:
+def test_controls_of_one_name_in_no_groups_of_their_own_are_reported(browser: Browser) -> None:
     """Groups without a name do not, nor what is hidden; the text of a row does."""
     page = browser.new_page()
     page.set_content("<ul><li><button>Delete</button></li><li><button>Delete</button></li></ul>")

@@ -100,6 +100,7 @@ def test_a_pose_is_captured_and_saved_by_keyboard_alone(browser: Browser, site: 
         form = page.get_by_role("form", name=re.compile("^Save capture"))
         tab_to(page, form.get_by_label("Name"))
         page.keyboard.type("taught_by_keys")
+        tab_to(page, form.get_by_role("button", name="Save", exact=True))
         page.keyboard.press("Enter")
         expect(form.get_by_role("status", name="Saving")).to_have_text("Saved as pose taught_by_keys.")
     record = site.call(site.bus.call(ReadEntry(kind="pose", name="taught_by_keys"), to="store"))
