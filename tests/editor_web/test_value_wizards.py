@@ -60,6 +60,8 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
     """The demo cell in physics and real time, and two behaviors."""
     project = tmp_path_factory.mktemp("wizards")
     file = patient_copy(project)
+    # The arms stand still: steps as long as those of the other taught cell cost half the time.
+    file.write_text(file.read_text(encoding="utf-8").replace("step_s: 0.001", "step_s: 0.002"), encoding="utf-8")
     (project / PLACES_ID).write_text(PLACES, encoding="utf-8")
     (project / FOREIGN_ID).write_text(FOREIGN, encoding="utf-8")
     file.with_name("other.yaml").write_text(OTHER_CELL, encoding="utf-8")
