@@ -56,7 +56,8 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
       aria-label={`Save capture ${capture.id}`}
       onSubmit={(event) => {
         event.preventDefault()
-        if (obstacle === undefined) save()
+        // What overwrites is pressed, not entered.
+        if (obstacle === undefined && !present.exists) save()
       }}
     >
       <Stack gap="xs">
@@ -113,6 +114,8 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
             )}
           </Alert>
         )}
+        {/* Without it the key Enter in a field does nothing. */}
+        <input type="submit" hidden />
         <Group gap="xs">
           <CommandButton
             label={present.exists ? 'Overwrite' : 'Save'}
