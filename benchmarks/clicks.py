@@ -10,10 +10,8 @@ Chromium.
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -39,6 +37,8 @@ from benchmarks.clicks_tasks import (
     teach,
     two_runs,
 )
+from benchmarks.served_dashboard import served_dashboard
+from tests.editor_web.browsing import browser_program
 
 ROOT = Path(__file__).parents[1]
 TASKS = (
@@ -49,10 +49,7 @@ TASKS = (
     Task(name="teach and use a pose", prepare=at_home, do=teach),
     Task(name="compare two runs", prepare=two_runs, do=compare),
 )
-_BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-_LOGIN = re.compile(r"http://\S+/login\?t=\S+")
 _LIMIT_MS = 120_000
-_SERVE = "import sys; from engine.cli.entry import main; sys.argv[0] = 'flexcell'; sys.exit(main())"
 _WORLD = "world: {kind: mujoco, step_s: 0.002, engine_silence_s: 5.0, world_silence_s: 5.0}"
 """A machine that draws pages beside the physics may be late."""
 
@@ -80,19 +77,8 @@ def served(tree: Path) -> Generator[str]:
         for name, text in DOCUMENTS.items():
             Path(folder, name).parent.mkdir(exist_ok=True)
             Path(folder, name).write_text(text, encoding="utf-8")
-        command = [sys.executable, "-c", _SERVE, "serve", "--cell", str(cell), "--port", "0"]
-        command += ["--project", folder, "--state", str(Path(folder, ".flexcell"))]
-        environment = {**os.environ, "PYTHONPATH": str(tree)}
-        server = subprocess.Popen(command, cwd=tree, env=environment, stdout=subprocess.PIPE, text=True)
-        try:
-            assert server.stdout is not None
-            found = next((match for line in server.stdout if (match := _LOGIN.search(line))), None)
-            if found is None:
-                raise SystemExit("flexcell serve ended without printing its address")
-            yield found.group()
-        finally:
-            server.terminate()
-            server.wait(timeout=60)
+        with served_dashboard(Path(folder), Path(folder, ".flexcell"), cell=cell, tree=tree) as login:
+            yield login
 
 
 def new_page(browser: Browser, login: str) -> Page:
@@ -135,10 +121,9 @@ def main() -> None:
     parser.add_argument("--only", action="append", metavar="NAME", help="a part of the name of a task")
     arguments = parser.parse_args()
     chosen = [each for each in TASKS if not arguments.only or any(part in each.name for part in arguments.only)]
-    program = os.environ.get("FLEXCELL_CHROMIUM") or next(filter(None, map(shutil.which, _BROWSERS)), None)
     expect.set_options(timeout=_LIMIT_MS)
     with sync_playwright() as playwright, served(arguments.before.resolve()) as login:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
         page = new_page(browser, login)
         figures: list[Figure] = []
         for task in chosen:

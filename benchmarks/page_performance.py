@@ -14,7 +14,6 @@ import platform
 import re
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 from collections.abc import Generator
@@ -28,12 +27,12 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from benchmarks.large_document import large_document
 from benchmarks.page_probe import PROBE
 from benchmarks.page_tasks import start_recording, stop_recording
+from benchmarks.served_dashboard import served_dashboard
 
 ROOT = Path(__file__).parents[1]
 STATIC = ROOT / "editor_web" / "static"
 ID = "behaviors/large.yaml"
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-_LOGIN = re.compile(r"http://\S+/login\?t=\S+")
 _LIMIT_MS = 30_000
 _DRAG_S = 3.0
 
@@ -97,21 +96,11 @@ class Devtools:
 @contextmanager
 def served(states: int) -> Generator[str]:
     """Run `flexcell serve` with a large behavior; gives the log-in address."""
-    program = Path(sys.executable).with_name("flexcell")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "behaviors").mkdir()
         Path(folder, ID).write_text(large_document(states), encoding="utf-8")
-        command = [program, "serve", "--port", "0", "--project", folder, "--state", Path(folder, ".flexcell")]
-        server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
-        try:
-            assert server.stdout is not None
-            found = next((match for line in server.stdout if (match := _LOGIN.search(line))), None)
-            if found is None:
-                raise SystemExit("flexcell serve ended without printing its address")
-            yield found.group()
-        finally:
-            server.terminate()
-            server.wait(timeout=60)
+        with served_dashboard(Path(folder), Path(folder, ".flexcell")) as login:
+            yield login
 
 
 def in_place(page: Page) -> None:

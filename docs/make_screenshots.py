@@ -12,9 +12,6 @@ the extras `all` and `test` and a Chromium. Without a graphics card the 3D view 
 from __future__ import annotations
 
 import argparse
-import os
-import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -26,10 +23,11 @@ from typing import Literal
 
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
+from benchmarks.served_dashboard import served_dashboard
+from tests.editor_web.browsing import browser_program
+
 ROOT = Path(__file__).parent.parent
 OUT = ROOT / "docs" / "screenshots"
-LOGIN = re.compile(r"http://\S+/login\?t=\S+")
-BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 LIMIT_MS = 240_000
 Scheme = Literal["light", "dark"]
 DESKTOP, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)
@@ -52,20 +50,9 @@ class Picture:
 @contextmanager
 def served(cell: str | None) -> Generator[str]:
     """Run `flexcell serve` on a free port; gives the log-in address."""
-    program = Path(sys.executable).with_name("flexcell")
-    chosen = () if cell is None else ("--cell", ROOT / "behaviors" / "cells" / f"{cell}.yaml")
-    with tempfile.TemporaryDirectory() as state:
-        command = [program, "serve", *chosen, "--port", "0", "--project", ROOT, "--state", state]
-        server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
-        try:
-            assert server.stdout is not None
-            found = next((match for line in server.stdout if (match := LOGIN.search(line))), None)
-            if found is None:
-                raise SystemExit("flexcell serve ended without printing its address")
-            yield found.group()
-        finally:
-            server.terminate()
-            server.wait(timeout=60)
+    file = None if cell is None else ROOT / "behaviors" / "cells" / f"{cell}.yaml"
+    with tempfile.TemporaryDirectory() as state, served_dashboard(ROOT, Path(state), cell=file) as login:
+        yield login
 
 
 def sweep_runs() -> None:
@@ -197,10 +184,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(each.name for each in PICTURES))
     chosen = [each for each in PICTURES if each.name in (parser.parse_args().names or [p.name for p in PICTURES])]
-    program = os.environ.get("FLEXCELL_CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
     schemes: tuple[Scheme, ...] = ("light", "dark")
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
         for picture in chosen:
             picture.before()
             for scheme in schemes:
