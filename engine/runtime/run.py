@@ -356,6 +356,7 @@ class Run:
         if self._begun:
             return
         self._begun = True
+        self._recorder.begin()
         checkpoint = self._checkpoint
         if checkpoint is not None and self._is_resumed:
             self._log.resumed(checkpoint)

@@ -32,6 +32,7 @@ class Recorder:
         self._clock_now_s = clock.now_s
         self._journal = journal
         self._append = journal.append
+        self._after_s = after_s
         self._start_s = clock.now_s() - after_s
         self._keeps = not isinstance(journal, NullRunJournal)
         self._watchers: tuple[Watcher, ...] = ()
@@ -42,6 +43,10 @@ class Recorder:
         """Whether events are stored or watched; otherwise they are only numbered."""
         self.ended = False
         """True once the end of the run is recorded; later events of abandoned states are dropped."""
+
+    def begin(self) -> None:
+        """Let the time of the run begin now: what was prepared may wait for its start."""
+        self._start_s = self._clock_now_s() - self._after_s
 
     def now_s(self) -> float:
         """Seconds since the start of the run, rounded to microseconds so that equal instants print equally."""
