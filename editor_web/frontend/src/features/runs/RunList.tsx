@@ -33,7 +33,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
               isCurrent={run.id === current}
               icon={<StatusIcon status={runStateOf(run).look} size={15} />}
               label={nameOf(run.behavior)}
-              description={`${wallTime(run.started_at_s)} · ${runText(run)}`}
+              description={`${startOf(run, runs)} · ${runText(run)}`}
               onOpen={() => onOpen(run.id)}
             />
           </li>
@@ -41,6 +41,14 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
       </List>
     </nav>
   )
+}
+
+/** When it was started; to the hundredth where another run of the behavior was started in the same second. */
+function startOf(run: RunView, runs: readonly RunView[]): string {
+  const start = wallTime(run.started_at_s)
+  const isAlone = runs.every((each) => each === run || each.behavior !== run.behavior || wallTime(each.started_at_s) !== start)
+  const hundredths = Math.floor((run.started_at_s % 1) * 100)
+  return isAlone ? start : `${start}.${String(hundredths).padStart(2, '0')}`
 }
 
 function runText(run: RunView): string {
