@@ -18,6 +18,10 @@ export default defineConfig({
     cssTarget: ['chrome123', 'firefox120', 'safari17.5'],
     chunkSizeWarningLimit: 1600,
     manifest: true,
+    rolldownOptions: {
+      // Each of the many small files of icons that views share would cost as much time as a large one.
+      output: { codeSplitting: { groups: [{ name: 'icons', test: /node_modules.@tabler/, minShareCount: 2 }] } },
+    },
   },
   worker: { format: 'es', plugins: () => [thirdParty.worker()] },
   server: {
