@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from engine.bus import SkillBus
-from engine.project import cell_runner, session_run
+from engine.project import cell_runner
 from engine.runtime.run_options import RunOptions
 from engine.skills.entries import WriteEntry
 from tests.editor_web.accessible_names import controls_of, require_unique_names
@@ -99,7 +99,7 @@ def named(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[
     for behavior_id, text in ((LIFT_ID, LIFT), (REACH_ID, REACH), (SORT_ID, SORT)):
         (project / behavior_id).write_text(text, encoding="utf-8")
     starts = StartTimes()
-    with patch.object(session_run, "time", starts), patch.object(cell_runner, "time", starts):
+    with patch.object(cell_runner, "time", starts):
         with Workshop(host=loopback, project=project) as before:
             first, second = (before.start(SORT_ID), before.start(SORT_ID))
             for run in (first, second):

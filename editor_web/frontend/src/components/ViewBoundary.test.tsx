@@ -2,6 +2,7 @@
 import { screen } from '@testing-library/react'
 import { afterEach, beforeEach, expect, it, vi } from 'vitest'
 import { show } from '../../testing/page'
+import { lazyView } from './lazyView'
 import { ViewBoundary } from './ViewBoundary'
 
 let isBroken = true
@@ -62,4 +63,21 @@ it('shows the details where they cannot be copied', async () => {
   vi.spyOn(navigator.clipboard, 'writeText').mockRejectedValue(new Error('not allowed'))
   await user.click(screen.getByRole('button', { name: 'Copy details' }))
   expect(await screen.findByText(/^Plots at/)).toBeVisible()
+})
+
+it.each([
+  ['loads the page anew where code does not come again and the server answers', true, 1],
+  ['stays where the server does not answer either', false, 0],
+])('%s', async (_, isThere, reloads) => {
+  const reload = vi.spyOn(location, 'reload').mockImplementation(() => undefined)
+  vi.stubGlobal('fetch', () => (isThere ? Promise.resolve(new Response('')) : Promise.reject(new TypeError('Failed to fetch'))))
+  const Lazy = lazyView(() => Promise.reject(new TypeError('Failed to fetch dynamically imported module')))
+  const user = show(
+    <ViewBoundary name="Plots">
+      <Lazy />
+    </ViewBoundary>,
+  )
+  await user.click(await screen.findByRole('button', { name: 'Try again' }))
+  expect(await screen.findByRole('alert')).toHaveTextContent('Failed to fetch dynamically imported module')
+  expect(reload).toHaveBeenCalledTimes(reloads)
 })

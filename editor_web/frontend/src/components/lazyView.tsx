@@ -13,19 +13,32 @@ export function forgetFailedLoads(): void {
   failed.clear()
 }
 
+/** A page that is loaded anew without its server is gone, and STOP with it. */
+async function isServerThere(): Promise<boolean> {
+  try {
+    return (await fetch(location.href)).ok
+  } catch {
+    return false
+  }
+}
+
 /**
  * Put it inside a `ViewBoundary`, which a failed load is thrown to. Nothing suspends: React 19.3 throws where a boundary
  * that waits for code is taken away before the code has come.
  */
 export function lazyView<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
   let loading: Promise<ComponentType<P>> | undefined
+  let hasFailed = false
   let loaded: ComponentType<P> | undefined
 
   function start(): Promise<ComponentType<P>> {
     loading ??= load().then(
       (body) => (loaded = body),
-      (error: unknown) => {
+      async (error: unknown) => {
         failed.add(() => (loading = undefined))
+        // Some browsers never fetch a module again that they did not get: the page has to be loaded anew.
+        if (hasFailed && (await isServerThere())) location.reload()
+        hasFailed = true
         throw error
       },
     )
