@@ -115,6 +115,7 @@ def edited(page: Page) -> None:
     """All of it on the canvas, with one state chosen by the address."""
     expect(page.locator(".react-flow[data-in-place] .react-flow__node").first).to_be_visible(timeout=LIMIT_MS)
     expect(page.locator("[data-card][data-selected]").first).to_be_visible(timeout=LIMIT_MS)
+    expect(page.get_by_role("button", name="Add gripper.Grasp", exact=True)).to_be_attached(timeout=LIMIT_MS)
 
 
 def looked_back(page: Page) -> None:

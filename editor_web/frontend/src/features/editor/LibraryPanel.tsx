@@ -54,7 +54,7 @@ export function LibraryPanel({ tools }: { tools?: ReactNode }) {
               onExplain={(item) => setExplained(explained === item ? undefined : item)}
             />
           ))}
-          {groups.length === 0 && <FormWords>Nothing in the library fits.</FormWords>}
+          {groups.length === 0 && <FormWords>{catalogue ? 'Nothing in the library fits.' : 'Loading…'}</FormWords>}
         </Box>
       </Stack>
     </Panel>

@@ -7,6 +7,7 @@ import { setField } from '../../document/editing/edits'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { kindLabel } from '../../document/tree'
 import { nameOfPath, parentPath } from '../../document/path'
+import { Words } from '../../components/Words'
 import { perform } from './apply'
 import { openReferred } from './pageActions'
 import { PolicyForm } from './PolicyForm'
@@ -77,7 +78,11 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
             options={node.kind === 'state' ? (catalogue?.states.map((each) => each.name) ?? []) : []}
             onCommit={(typed) => typed && set(node.kind, typed, 'Kind')}
           />
-          {state && <FormWords>{state.doc}</FormWords>}
+          {state && (
+            <FormWords>
+              <Words text={state.doc} />
+            </FormWords>
+          )}
           {node.document && (
             <FormWords>
               {behavior?.description} <OpenOther id={node.document} from={node.path} />

@@ -8,6 +8,7 @@ import { editFieldOf, fieldProblem, isTemplate, limitsText, shownValue, typedVal
 import type { EditNode } from '../../document/editing/model'
 import { unknownName, type Surroundings } from '../../document/editing/offers'
 import { armOf } from '../../document/editing/preview'
+import { Words } from '../../components/Words'
 import { perform } from './apply'
 import { FormWords } from './FormParts'
 import { MeasuredNow } from './MeasuredNow'
@@ -115,7 +116,7 @@ function ParameterRow({ node, field, around }: { node: EditNode; field: EditFiel
       )}
       {field.kind === 'entry' && <FieldPreview node={node} field={field} value={value} entries={around.entries} pointed={pointed} />}
       <Text size="xs" mt={2} c={problem ? 'var(--failed)' : 'dimmed'} id={hintId}>
-        {problem ?? field.description}
+        <Words text={problem ?? field.description} />
       </Text>
     </div>
   )

@@ -15,6 +15,7 @@ import {
 } from '../../document/editing/fields'
 import { offersOf, unknownName, type Surroundings } from '../../document/editing/offers'
 import { plainText } from '../../document/values'
+import { Words } from '../../components/Words'
 import { EntryDetails } from './EntryDetails'
 import { TemplateInput } from './TemplateInput'
 
@@ -206,7 +207,7 @@ function RecordField({ field, value, around, within, isStarted, onSet }: RecordF
         onSet={onSet}
       />
       <Text size="xs" c={problem ? 'var(--failed)' : 'dimmed'} id={hintId}>
-        {problem ?? field.description}
+        <Words text={problem ?? field.description} />
       </Text>
     </div>
   )
