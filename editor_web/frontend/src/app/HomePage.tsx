@@ -9,7 +9,7 @@ import { PageLink } from '../components/PageLink'
 import { Panel } from '../components/Panel'
 import { RunBadge } from '../components/StatusBadge'
 import { TourButton } from '../components/TourButton'
-import { wallTime } from '../document/time'
+import { startTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
@@ -68,7 +68,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
                     <Table.Td>
                       <RunBadge run={run} />
                     </Table.Td>
-                    <Table.Td>{wallTime(run.started_at_s)}</Table.Td>
+                    <Table.Td>{startTime(run, runs)}</Table.Td>
                     <Table.Td>
                       <RunTime run={run} />
                     </Table.Td>

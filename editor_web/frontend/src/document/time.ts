@@ -19,6 +19,19 @@ export function wallTime(secondsSince1970: number, now: Date = new Date()): stri
   return `${at.getFullYear()}-${pad(at.getMonth() + 1)}-${pad(at.getDate())} ${time}`
 }
 
+interface Started {
+  readonly id: string
+  readonly behavior: string
+  readonly started_at_s: number
+}
+
+/** When a run was started, to the hundredth where another one of its behavior was started in the same second. */
+export function startTime(run: Started, among: readonly Started[]): string {
+  const start = wallTime(run.started_at_s)
+  const hasTwin = among.some((each) => each.id !== run.id && each.behavior === run.behavior && wallTime(each.started_at_s) === start)
+  return hasTwin ? `${start}.${pad(Math.floor((run.started_at_s % 1) * 100))}` : start
+}
+
 function pad(part: number): string {
   return String(part).padStart(2, '0')
 }

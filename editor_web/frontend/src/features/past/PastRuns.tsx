@@ -10,7 +10,7 @@ import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
 import { RunTime } from '../../components/RunTime'
 import { RunBadge } from '../../components/StatusBadge'
-import { wallTime } from '../../document/time'
+import { startTime, wallTime } from '../../document/time'
 import { dayEndS, dayStartS } from './days'
 import classes from './past.module.css'
 
@@ -101,7 +101,7 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
               <Checkbox
                 mt="xs"
                 size="xs"
-                aria-label={`Compare ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                aria-label={`Compare ${run.behavior} of ${startTime(run, found.runs)}`}
                 checked={chosen.some((each) => each.id === run.id)}
                 onChange={(event) => choose(run, event.currentTarget.checked)}
               />
@@ -113,7 +113,7 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
                     variant="subtle"
                     color="gray"
                     size="sm"
-                    aria-label={`More of ${run.behavior} of ${wallTime(run.started_at_s)}`}
+                    aria-label={`More of ${run.behavior} of ${startTime(run, found.runs)}`}
                   >
                     <IconDots size={15} />
                   </ActionIcon>

@@ -5,7 +5,7 @@ import { RunBadge } from '../../components/StatusBadge'
 import { RunTime } from '../../components/RunTime'
 import { PageLink } from '../../components/PageLink'
 import { isFailed } from '../../document/runState'
-import { wallTime } from '../../document/time'
+import { startTime, wallTime } from '../../document/time'
 import { nameOf } from './RunList'
 
 interface FinishedRunsProps {
@@ -40,7 +40,7 @@ export function FinishedRuns({ runs, href, onOpen, chosen, onChoose }: FinishedR
                 ml="auto"
                 size="xs"
                 label="Compare"
-                aria-label={`Compare ${nameOf(run.behavior)} of ${wallTime(run.started_at_s)}`}
+                aria-label={`Compare ${nameOf(run.behavior)} of ${startTime(run, runs)}`}
                 checked={chosen.includes(run.id)}
                 onChange={(event) => onChoose(run.id, event.currentTarget.checked)}
               />

@@ -6,7 +6,7 @@ import { Empty } from '../../components/Empty'
 import { SideLink } from '../../components/SideLink'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive, runStateOf, runWords } from '../../document/runState'
-import { duration, wallTime } from '../../document/time'
+import { duration, startTime } from '../../document/time'
 import { fileTitle } from '../../document/path'
 
 export interface RunListProps {
@@ -33,7 +33,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
               isCurrent={run.id === current}
               icon={<StatusIcon status={runStateOf(run).look} size={15} />}
               label={nameOf(run.behavior)}
-              description={`${startOf(run, runs)} · ${runText(run)}`}
+              description={`${startTime(run, runs)} · ${runText(run)}`}
               onOpen={() => onOpen(run.id)}
             />
           </li>
@@ -41,14 +41,6 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
       </List>
     </nav>
   )
-}
-
-/** When it was started; to the hundredth where another run of the behavior was started in the same second. */
-function startOf(run: RunView, runs: readonly RunView[]): string {
-  const start = wallTime(run.started_at_s)
-  const isAlone = runs.every((each) => each === run || each.behavior !== run.behavior || wallTime(each.started_at_s) !== start)
-  const hundredths = Math.floor((run.started_at_s % 1) * 100)
-  return isAlone ? start : `${start}.${String(hundredths).padStart(2, '0')}`
 }
 
 function runText(run: RunView): string {
