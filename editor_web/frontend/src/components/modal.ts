@@ -4,21 +4,14 @@ import { pageStore } from '../api/pageStore'
 
 const useOpen = pageStore<{ readonly dialogs: readonly HTMLDialogElement[] }>(() => ({ dialogs: [] }))
 
-/** Open the dialog over everything else, for as long as it is shown; then the keyboard is where it was, unless it is elsewhere. */
+/** Open the dialog over everything else, for as long as it is shown. */
 export function useModal(element: RefObject<HTMLDialogElement | null>, isShown = true): void {
   useLayoutEffect(() => {
     const dialog = element.current
     if (!isShown || !dialog) return
-    const before = document.activeElement
     if (!dialog.open) dialog.showModal()
     useOpen.setState(({ dialogs }) => ({ dialogs: [...dialogs, dialog] }))
-    return () => {
-      useOpen.setState(({ dialogs }) => ({ dialogs: dialogs.filter((each) => each !== dialog) }))
-      // The browser gives it back where a dialog is closed, and not where it is taken out of the page.
-      queueMicrotask(() => {
-        if (before instanceof HTMLElement && document.activeElement === document.body) before.focus()
-      })
-    }
+    return () => useOpen.setState(({ dialogs }) => ({ dialogs: dialogs.filter((each) => each !== dialog) }))
   }, [element, isShown])
 }
 

@@ -1,7 +1,7 @@
 /** What all wizards look like: the parts of the value, the 3D view beside them, and the button that takes it. */
 import { Alert, Box, Button, Group, Stack, Text } from '@mantine/core'
 import { IconAlertTriangle } from '@tabler/icons-react'
-import type { ReactNode } from 'react'
+import { useEffect, useState, type ReactNode } from 'react'
 import { useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 import { Dialog } from '../../components/Dialog'
@@ -21,6 +21,7 @@ export interface WizardFrameProps {
 export function WizardFrame({ title, view, isNarrow, fault, onUse, onClose, children }: WizardFrameProps) {
   const refusal = useTeach((s) => s.refused.look)
   const hasView = view !== undefined && !isNarrow
+  useFocusBack()
   return (
     <Dialog isOpen isWide={hasView} title={title} onClose={onClose}>
       <Group align="stretch" gap="md" wrap="nowrap" mt="xs">
@@ -50,5 +51,16 @@ export function WizardFrame({ title, view, isNarrow, fault, onUse, onClose, chil
         )}
       </Group>
     </Dialog>
+  )
+}
+
+/** The keyboard is again where it was before, unless something else has taken it. */
+function useFocusBack(): void {
+  const [before] = useState(() => document.activeElement)
+  useEffect(
+    () => () => {
+      if (before instanceof HTMLElement && document.activeElement === document.body) before.focus()
+    },
+    [before],
   )
 }
