@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest'
 import type { TaughtStep } from '../api/types'
-import { added, bodyOf, moved, rolesOf, takes, teachable, type Role, type Step } from './demonstration'
+import { added, bodyOf, rolesOf, takes, teachable, type Role, type Step } from './demonstration'
+import { reordered } from './reorder'
 
 const home: Step = { key: 1, kind: 'joints', name: 'home' }
 const pick: Step = { key: 2, kind: 'pose', name: 'pick', role: 'grasp', part: '' }
@@ -16,10 +17,10 @@ describe('steps of a demonstration', () => {
   })
 
   it('change places, and stay where there is none', () => {
-    expect(moved([home, pick], 0, 1)).toEqual([pick, home])
-    expect(moved([home, pick], 1, -1)).toEqual([pick, home])
-    expect(moved([home, pick], 0, -1)).toEqual([home, pick])
-    expect(moved([home, pick], 1, 1)).toEqual([home, pick])
+    expect(reordered([home, pick], 0, 1)).toEqual([pick, home])
+    expect(reordered([home, pick], 1, -1)).toEqual([pick, home])
+    expect(reordered([home, pick], 0, -1)).toEqual([home, pick])
+    expect(reordered([home, pick], 1, 1)).toEqual([home, pick])
   })
 
   it('are sent without what nobody chose', () => {

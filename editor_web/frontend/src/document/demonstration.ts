@@ -53,15 +53,6 @@ export function added(steps: readonly Step[], kind: Kind, name: string): readonl
   return [...steps, { key: 1 + Math.max(0, ...steps.map((step) => step.key)), kind, name }]
 }
 
-/** With the step at `index` as many places further on. */
-export function moved(steps: readonly Step[], index: number, by: number): readonly Step[] {
-  const target = index + by
-  const step = steps[index]
-  if (!step || target < 0 || target >= steps.length) return steps
-  const rest = steps.filter((_, each) => each !== index)
-  return [...rest.slice(0, target), step, ...rest.slice(target)]
-}
-
 export function bodyOf({ kind, name, role, part }: Step): TaughtStep {
   return { kind, name, ...(role ? { role } : {}), ...(part === undefined ? {} : { part }) }
 }

@@ -20,3 +20,8 @@ export function lookup<T>(dict: Dict<T> | undefined, name: string | number): T |
 export function without<T>(dict: Dict<T>, name: string): Dict<T> {
   return Object.fromEntries(Object.entries(dict).filter(([each]) => each !== name))
 }
+
+/** The fields of a value that has some; none of a list or a plain value. */
+export function fieldsOf(value: unknown): Dict<unknown> {
+  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Dict<unknown>) : {}
+}

@@ -1,4 +1,5 @@
 /** Poses and what is made of taught points: frames, grids, boxes. Metres, quaternions x y z w of unit length. Pure. */
+import { fieldsOf, lookup } from './dict'
 
 export type Vector = readonly [number, number, number]
 export type Quaternion = readonly [number, number, number, number]
@@ -8,6 +9,8 @@ export interface PlacedPose {
   readonly xyzw: Quaternion
 }
 
+/** The frame of a pose that names none. */
+export const WORLD = 'world'
 export const NO_TURN: Quaternion = [0, 0, 0, 1]
 /** Half a turn about x: a tool that looks along z looks back along it. */
 export const FLIPPED: Quaternion = [1, 0, 0, 0]
@@ -197,4 +200,10 @@ export function vectorFrom(value: unknown): Vector | undefined {
 
 function millimetres(m: number): string {
   return `${(m * 1000).toFixed(1)} mm`
+}
+
+/** The frame that the value of a pose is in. */
+export function frameOf(pose: unknown): string {
+  const frame = lookup(fieldsOf(pose), 'frame')
+  return typeof frame === 'string' && frame ? frame : WORLD
 }

@@ -6,13 +6,13 @@ import {
   entryWaypoint,
   ghostOf,
   jointWaypoint,
-  moved,
   poseWaypoint,
   waypointsFault,
   waypointsOf,
   waypointWords,
   withBlend,
 } from './waypoints'
+import { reordered } from '../reorder'
 import { wizardOf } from './wizards'
 
 const LIST = [
@@ -63,10 +63,10 @@ it('moves a waypoint, but not over the ends', () => {
   const waypoints = waypointsOf(LIST.slice(0, 3))
   const order = (list: typeof waypoints) => list.map((each) => waypoints.indexOf(each))
   expect([
-    order(moved(waypoints, 0, 1)),
-    order(moved(waypoints, 2, -1)),
-    order(moved(waypoints, 0, -1)),
-    order(moved(waypoints, 2, 1)),
+    order(reordered(waypoints, 0, 1)),
+    order(reordered(waypoints, 2, -1)),
+    order(reordered(waypoints, 0, -1)),
+    order(reordered(waypoints, 2, 1)),
   ]).toEqual([
     [1, 0, 2],
     [0, 2, 1],

@@ -1,6 +1,6 @@
-/** A list of waypoints while it is taught: what each is, in words and in the view, and the list in another order. Pure. */
-import { lookup, without, type Dict } from '../dict'
-import { roundedTo, vectorFrom, type PlacedPose, type Vector } from '../poses'
+/** A list of waypoints while it is taught: what each is, in words and in the view, and with another blend. Pure. */
+import { fieldsOf, lookup, without, type Dict } from '../dict'
+import { frameOf, roundedTo, vectorFrom, WORLD, type PlacedPose, type Vector } from '../poses'
 import { plainText } from '../values'
 import { isTemplate } from './fields'
 import { entryNamed } from './preview'
@@ -11,7 +11,6 @@ export interface Waypoint {
   readonly place: Vector | undefined
 }
 
-const WORLD = 'world'
 const TURN_DIGITS = 5
 
 /** The waypoints of a document's value. */
@@ -45,12 +44,6 @@ export function withBlend(waypoint: Waypoint, blend: number | undefined): Waypoi
 export function blendOf({ value }: Waypoint): number | undefined {
   const blend = lookup(fieldsOf(value), 'blend_m')
   return typeof blend === 'number' ? blend : undefined
-}
-
-/** The list with one waypoint further back or forth; as it is at its ends. */
-export function moved(waypoints: readonly Waypoint[], at: number, by: 1 | -1): readonly Waypoint[] {
-  const [one, other] = [waypoints[at], waypoints[at + by]]
-  return one && other ? waypoints.map((each, index) => (index === at ? other : index === at + by ? one : each)) : waypoints
 }
 
 /** Whether it has fields, such as a distance of its own. */
@@ -103,13 +96,4 @@ function targetOf(value: unknown): { readonly kind: 'joints' | 'pose'; readonly 
   const fields = fieldsOf(value)
   const kind = 'joints' in fields ? 'joints' : 'pose' in fields ? 'pose' : undefined
   return kind && { kind, target: fields[kind] }
-}
-
-function frameOf(pose: unknown): string {
-  const frame = lookup(fieldsOf(pose), 'frame')
-  return typeof frame === 'string' && frame ? frame : WORLD
-}
-
-function fieldsOf(value: unknown): Dict<unknown> {
-  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Dict<unknown>) : {}
 }

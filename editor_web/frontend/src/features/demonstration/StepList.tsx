@@ -1,10 +1,11 @@
 /** The chosen steps in their order: what each is for, and what a grasp takes. */
 import { ActionIcon, Flex, Group, NativeSelect, Paper, Text, Title } from '@mantine/core'
 import { IconArrowDown, IconArrowUp, IconX } from '@tabler/icons-react'
-import type { ReactNode } from 'react'
 import type { TaughtStep } from '../../api/types'
-import { KIND_WORDS, moved, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '../../document/demonstration'
+import { KIND_WORDS, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '../../document/demonstration'
+import { reordered } from '../../document/reorder'
 import classes from './Demonstration.module.css'
+import { RowTool } from '../../components/RowTool'
 import { KindIcon } from './EntryChoice'
 
 export interface StepListProps {
@@ -52,15 +53,15 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
                   <RoleChoice step={step} guessed={known?.role ?? undefined} onChange={(role) => changed(step.key, { role })} />
                 )}
                 <ActionIcon.Group>
-                  <StepButton label="Earlier" isOff={index === 0} onPress={() => onChange(moved(steps, index, -1))}>
+                  <RowTool label="Earlier" isOff={index === 0} onPress={() => onChange(reordered(steps, index, -1))}>
                     <IconArrowUp size={14} aria-hidden />
-                  </StepButton>
-                  <StepButton label="Later" isOff={index === steps.length - 1} onPress={() => onChange(moved(steps, index, 1))}>
+                  </RowTool>
+                  <RowTool label="Later" isOff={index === steps.length - 1} onPress={() => onChange(reordered(steps, index, 1))}>
                     <IconArrowDown size={14} aria-hidden />
-                  </StepButton>
-                  <StepButton label="Remove" onPress={() => onChange(steps.filter((each) => each.key !== step.key))}>
+                  </RowTool>
+                  <RowTool label="Remove" onPress={() => onChange(steps.filter((each) => each.key !== step.key))}>
                     <IconX size={14} aria-hidden />
-                  </StepButton>
+                  </RowTool>
                 </ActionIcon.Group>
               </Group>
               {known && takes(known, decided[index - 1]) && (
@@ -122,28 +123,5 @@ function PartChoice({ part, parts, onChange }: PartChoiceProps) {
         onChange={(event) => onChange(event.currentTarget.value)}
       />
     </Group>
-  )
-}
-
-interface StepButtonProps {
-  readonly label: string
-  readonly isOff?: boolean
-  readonly onPress: () => void
-  readonly children: ReactNode
-}
-
-function StepButton({ label, isOff = false, onPress, children }: StepButtonProps) {
-  return (
-    <ActionIcon
-      variant="subtle"
-      color="gray"
-      aria-label={label}
-      title={label}
-      disabled={isOff}
-      {...(isOff && { bg: 'transparent' })}
-      onClick={onPress}
-    >
-      {children}
-    </ActionIcon>
   )
 }

@@ -1,6 +1,6 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
-import { isGone } from '../../document/live'
 import { lookup } from '../../document/dict'
+import { isGone } from '../../document/live'
 import { Flex, Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
 import { useEffect, useRef, useState, type ReactNode } from 'react'

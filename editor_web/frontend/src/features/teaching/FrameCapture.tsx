@@ -4,8 +4,7 @@ import { IconAxisX } from '@tabler/icons-react'
 import { useState } from 'react'
 import { useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
-
-const WORLD = 'world'
+import { WORLD } from '../../document/poses'
 
 interface FrameCaptureProps {
   readonly obstacle: string | undefined

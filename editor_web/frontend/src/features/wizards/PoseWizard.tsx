@@ -6,9 +6,10 @@ import { useData } from '../../api/data'
 import type { CellStateFrame } from '../../api/types'
 import type { PoseRequest } from '../../api/valueWizard'
 import { CommandButton } from '../../components/CommandButton'
-import { lookup, type Dict } from '../../document/dict'
+import { fieldsOf, lookup, type Dict } from '../../document/dict'
 import {
   FLIPPED,
+  frameOf,
   inWorld,
   multiplied,
   NO_TURN,
@@ -19,6 +20,7 @@ import {
   threePointFrame,
   turnOf,
   vectorFrom,
+  WORLD,
   type PlacedPose,
   type Vector,
 } from '../../document/poses'
@@ -29,7 +31,6 @@ import { useShownValue } from './useShownValue'
 import { VectorFields } from './VectorFields'
 import { WizardFrame } from './WizardFrame'
 
-const WORLD = 'world'
 const TURN_DIGITS = 5
 
 interface PoseWizardProps {
@@ -203,15 +204,6 @@ function placeOf(frame: string, cell: CellStateFrame | undefined): PlacedPose | 
   if (frame === WORLD) return { xyz: [0, 0, 0], xyzw: NO_TURN }
   const pose = cell && lookup(cell.poses, frame)
   return pose && poseFrom([...pose.xyz, ...pose.xyzw])
-}
-
-function fieldsOf(value: unknown): Dict<unknown> {
-  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Dict<unknown>) : {}
-}
-
-function frameOf(value: unknown): string {
-  const frame = lookup(fieldsOf(value), 'frame')
-  return typeof frame === 'string' && frame ? frame : WORLD
 }
 
 function poseOf(value: unknown): PlacedPose | undefined {

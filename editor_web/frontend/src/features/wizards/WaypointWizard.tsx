@@ -1,10 +1,11 @@
 /** The waypoints of a motion: taken from the arm one after the other, in order, each with its blend. */
-import { ActionIcon, Group, NativeSelect, NumberInput, Stack, UnstyledButton } from '@mantine/core'
+import { Group, NativeSelect, NumberInput, Stack, UnstyledButton } from '@mantine/core'
 import { IconArrowDown, IconArrowUp, IconFocusCentered, IconTrash } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { useTeach } from '../../api/teaching'
 import type { WaypointRequest } from '../../api/valueWizard'
 import { CommandButton } from '../../components/CommandButton'
+import { RowTool } from '../../components/RowTool'
 import { lookup } from '../../document/dict'
 import {
   blendOf,
@@ -12,7 +13,6 @@ import {
   ghostOf,
   hasFields,
   jointWaypoint,
-  moved,
   poseWaypoint,
   waypointsFault,
   waypointsOf,
@@ -20,6 +20,7 @@ import {
   withBlend,
   type Waypoint,
 } from '../../document/editing/waypoints'
+import { reordered } from '../../document/reorder'
 import { TaughtArm, useArm, useArmObstacle, useTool } from './TaughtArm'
 import { useShownValue } from './useShownValue'
 import { WizardFrame } from './WizardFrame'
@@ -51,7 +52,7 @@ export function WaypointWizard({ asked, jog, view, isNarrow, onClose }: Waypoint
   }
 
   function move(at: number, by: 1 | -1): void {
-    setWaypoints(moved(waypoints, at, by))
+    setWaypoints(reordered(waypoints, at, by))
     setChosen(at + by)
   }
 
@@ -182,30 +183,15 @@ function WaypointRow({ at, waypoint, isChosen, isLast, onChoose, onMove, onDelet
         }}
         rightSection="m"
       />
-      <RowTool label={`Move waypoint ${at} up`} isDisabled={at === 0} onPress={() => onMove(-1)}>
+      <RowTool size={24} label={`Move waypoint ${at} up`} isOff={at === 0} onPress={() => onMove(-1)}>
         <IconArrowUp size={13} aria-hidden />
       </RowTool>
-      <RowTool label={`Move waypoint ${at} down`} isDisabled={isLast} onPress={() => onMove(1)}>
+      <RowTool size={24} label={`Move waypoint ${at} down`} isOff={isLast} onPress={() => onMove(1)}>
         <IconArrowDown size={13} aria-hidden />
       </RowTool>
-      <RowTool label={`Delete waypoint ${at}`} onPress={onDelete}>
+      <RowTool size={24} label={`Delete waypoint ${at}`} onPress={onDelete}>
         <IconTrash size={13} aria-hidden />
       </RowTool>
     </Group>
-  )
-}
-
-interface RowToolProps {
-  readonly label: string
-  readonly isDisabled?: boolean
-  readonly onPress: () => void
-  readonly children: ReactNode
-}
-
-function RowTool({ label, isDisabled = false, onPress, children }: RowToolProps) {
-  return (
-    <ActionIcon variant="subtle" color="gray" size={24} aria-label={label} title={label} disabled={isDisabled} onClick={onPress}>
-      {children}
-    </ActionIcon>
   )
 }
