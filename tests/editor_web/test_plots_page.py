@@ -17,6 +17,18 @@ from tests.editor_web.fake_plant import FakePlant
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
 LAPTOP: Size = (1280, 800)
+BRIEF_ID = "behaviors/brief.yaml"
+BRIEF = """
+flexcell: 1
+name: brief
+outcomes: [good]
+success: [good]
+root:
+  machine:
+    initial: only
+    states:
+      only: {state: flow.Wait, with: {duration_s: 0.5}, transitions: {done: good}}
+"""
 # How many pixels of the canvas are of a curve and not of text or grid.
 PAINTED = """() => {
     const canvas = document.querySelector('[aria-label*=" curves over "] canvas')
@@ -169,12 +181,18 @@ def test_curves_on_a_phone(browser: Browser, shop: Workshop) -> None:
         page.wait_for_function(f"() => ({PAINTED})() > 10")
 
 
+def with_brief_run(project: Path) -> Path:
+    """Write a behavior that ends by itself after a time that can be seen in its timeline."""
+    (project / "behaviors").mkdir()
+    (project / BRIEF_ID).write_text(BRIEF, encoding="utf-8")
+    return project
+
+
 @contextmanager
 def recorded_run(browser: Browser, shop: Workshop, plant: FakePlant) -> Generator[Page]:
     """The page of a run that was recorded, and has ended."""
-    run = shop.start(SHIFT_ID)
+    run = shop.start(BRIEF_ID)
     shop.on_loop(lambda: plant.publish(2.0))
-    shop.call(shop.session.stop(run, reason="it was long enough"))
     shop.call(shop.session.wait(run))
     with opened_page(browser, shop.running, f"/runs/{run}?layout=debug", size=LAPTOP, quiet=False) as page:
         yield page
@@ -186,7 +204,7 @@ def test_recorded_curves_below_the_lanes_have_their_axis_and_their_cursor(
     """A press at one place means one time in both; what is drawn is saved as CSV and PNG."""
     with (
         # With a 3D view, for a server records its runs for that.
-        Workshop(host=loopback, project=tmp_path, furnish=plant.furnish, cell_view=True) as shop,
+        Workshop(host=loopback, project=with_brief_run(tmp_path), furnish=plant.furnish, cell_view=True) as shop,
         recorded_run(browser, shop, plant) as page,
     ):
         page.get_by_role("tab", name="Timeline").click()

@@ -1,4 +1,5 @@
 /** Times in words; never throws, whatever the browser's locale is called. */
+import type { RunView } from '../api/types'
 
 /** `0.42 s`, `12.3 s`, `3:05 min`, `1:02:03 h`. */
 export function duration(seconds: number): string {
@@ -19,11 +20,7 @@ export function wallTime(secondsSince1970: number, now: Date = new Date()): stri
   return `${at.getFullYear()}-${pad(at.getMonth() + 1)}-${pad(at.getDate())} ${time}`
 }
 
-interface Started {
-  readonly id: string
-  readonly behavior: string
-  readonly started_at_s: number
-}
+type Started = Pick<RunView, 'id' | 'behavior' | 'started_at_s'>
 
 /** When a run was started, to the hundredth where another one of its behavior was started in the same second. */
 export function startTime(run: Started, among: readonly Started[]): string {
