@@ -7,7 +7,7 @@ a planned path that waits for its operator, `shared` an arm that waits because a
 `editor` a behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches,
 `workcell` the page of the cell, `sweep` what the first runs of a sweep have shown, which are executed before.
 
-Only where they are named: `operate`, `debug` and `3d` are the layouts of a run in motion, each at three sizes. They
+Only where they are named: `operate`, `debug` and `3d` are the layouts of a paused run, each at three sizes. They
 are not kept in the repository; give a folder for them. Needs the extras `all` and `test` and a Chromium. Without a
 graphics card the 3D view takes seconds a picture.
 """
@@ -95,11 +95,14 @@ def in_motion(page: Page) -> None:
     expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=LIMIT_MS)
 
 
-def running(page: Page) -> None:
-    """Start the transfer in whatever layout the page has."""
+def paused(page: Page) -> None:
+    """Start the transfer in whatever layout the page has, and pause it in mid-motion."""
     drawn(page)
     start(page)
-    expect(page.get_by_role("status", name="State of the run")).to_have_text("Running", timeout=LIMIT_MS)
+    state = page.get_by_role("status", name="State of the run")
+    expect(state).to_have_text("Running", timeout=LIMIT_MS)
+    page.get_by_role("button", name="Pause", exact=True).click()
+    expect(state).to_contain_text("Paused", timeout=LIMIT_MS)
 
 
 def asked(page: Page) -> None:
@@ -186,7 +189,7 @@ LAYOUTS = tuple(
         cell="dual_panda",
         address=f"{TRANSFER}?layout={name}",
         size=DESKTOP,
-        prepare=running,
+        prepare=paused,
         further=(LARGE, PHONE),
     )
     for name in ("operate", "debug", "3d")
