@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from engine.bus import SkillBus
-from engine.messages import FramePoses, PartPoses, Pose, SceneDescription
+from engine.messages import FramePoses, PartPoses, Pose, SceneDescription, Vector3
 from robots.model.joint_map import JointMap
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import SimSnapshot
@@ -17,6 +17,8 @@ from robots.sim.world.tool_topics import tool_topic
 
 FRAME_RATE_HZ = 30.0
 JOINT_RATE_HZ = 100.0
+_USUALLY_UP: Vector3 = (0.0, 0.0, 1.0)
+"""The axis of parts that `PartPoses` does not list."""
 
 
 class WorldPublisher:
@@ -29,8 +31,10 @@ class WorldPublisher:
         describe: Callable[[], SceneDescription],
         *,
         joint_maps: Mapping[str, JointMap],
+        up: Mapping[str, Vector3 | None],
     ) -> None:
         self._host = host
+        self._up = {name: axis for name, axis in up.items() if axis != _USUALLY_UP}
         summary = host.summary
         self._frames = summary.frames
         self._parts = frozenset(summary.parts)
@@ -82,4 +86,4 @@ class WorldPublisher:
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
         xyz, xyzw = snapshot.frames()
         poses = {name: Pose(xyz=xyz[row], xyzw=xyzw[row]) for row, name in self._part_rows}
-        return PartPoses(time_s=snapshot.time_s, poses=poses)
+        return PartPoses(time_s=snapshot.time_s, poses=poses, up=self._up)
