@@ -11,7 +11,7 @@ from engine.messages.geometry import Message, Pose
 HoldEvidence = Literal["contact", "width", "current", "not measured"]
 """What tells which body a tool holds.
 
-Only `contact` names the body. `width` (opening of fingers) and `current` (force of a motor or magnet) tell that
+Only `contact` names the body. `width` (opening of fingers) and `current` (force of its drive) tell that
 something is held, and not what; with `not measured` nothing tells it.
 """
 

@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 DIGESTS_NAME = "flexcell.digests"
 """Name of the MCAP metadata record of the digests, written when the recording is closed."""
 _EVENTS = "events"
-_ALL = "sha256"
 _BYTES = 4
 
 
@@ -20,16 +19,14 @@ class EventDigests:
 
     def __init__(self) -> None:
         self._each = bytearray()
-        self._all = hashlib.sha256()
 
     def add(self, encoded: bytes) -> None:
         """Take the next event, as it is written."""
         self._each += event_digest(encoded)
-        self._all.update(encoded)
 
     def to_metadata(self) -> dict[str, str]:
         """Return the key-value pairs of the metadata record."""
-        return {_EVENTS: self._each.hex(), _ALL: self._all.hexdigest()}
+        return {_EVENTS: self._each.hex()}
 
 
 def event_digest(encoded: bytes) -> bytes:
@@ -40,7 +37,8 @@ def event_digest(encoded: bytes) -> bytes:
 def altered_events(pairs: Mapping[str, str] | None, encoded: Sequence[bytes]) -> dict[int, str] | None:
     """Return the recorded digests of the events that have another one now, by index; None without digests.
 
-    Events that were added have no recorded digest: an empty text.
+    An event that was added has no recorded digest, an empty text; where the last events are missing, the index after
+    the last one has that of the first missing one.
     """
     if pairs is None:
         return None
@@ -51,10 +49,5 @@ def altered_events(pairs: Mapping[str, str] | None, encoded: Sequence[bytes]) ->
         for index, each in enumerate(encoded)
         if (expected := recorded[index * digits : (index + 1) * digits]) != event_digest(each).hex()
     }
-    if found or not encoded:
-        return found
-    overall = hashlib.sha256()
-    for each in encoded:
-        overall.update(each)
-    # Events at the end are missing.
-    return {} if overall.hexdigest() == pairs.get(_ALL) else {len(encoded): ""}
+    missing = recorded[len(encoded) * digits :]
+    return {**found, len(encoded): missing[:digits]} if missing else found

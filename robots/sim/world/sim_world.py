@@ -18,7 +18,6 @@ from engine.robot import DeviceStatus, Robot
 from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResult, ResetParts, ResetPartsResult
 from robots.port import ArmPort, GripperPort, HandPort
 from robots.scene.sim_scene import ArmPlacement, SimScene
-from robots.scene.up_axis import up_axis
 from robots.sim.commands.world_commands import PushSimBody, StopAll
 from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
 from robots.sim.grip.tool_summary import tool_summary
@@ -267,8 +266,7 @@ class SimWorld:
             bus,
             self._host,
             lambda: describe_scene(self._scene, cache=self._cache),
-            joint_maps={placement.name: placement.robot().joint_map for placement in self._scene.arms},
-            up={part.name: up_axis(part) for part in self._scene.parts},
+            scene=self._scene,
         )
         self._bus = bus
         bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)

@@ -5,11 +5,12 @@ Latest values are computed on demand, streams only while they have subscribers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from engine.bus import SkillBus
 from engine.messages import FramePoses, PartPoses, Pose, SceneDescription, Vector3
-from robots.model.joint_map import JointMap
+from robots.scene.sim_scene import SimScene
+from robots.scene.up_axis import up_axis
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.world.arm_topics import arm_topics
@@ -30,11 +31,11 @@ class WorldPublisher:
         host: WorldHost,
         describe: Callable[[], SceneDescription],
         *,
-        joint_maps: Mapping[str, JointMap],
-        up: Mapping[str, Vector3 | None],
+        scene: SimScene,
     ) -> None:
         self._host = host
-        self._up = {name: axis for name, axis in up.items() if axis != _USUALLY_UP}
+        self._up = {part.name: axis for part in scene.parts if (axis := up_axis(part)) != _USUALLY_UP}
+        joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
         summary = host.summary
         self._frames = summary.frames
         self._parts = frozenset(summary.parts)
