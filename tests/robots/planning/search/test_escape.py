@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import msgspec
 import numpy as np
 import pytest
@@ -27,7 +25,8 @@ from robots.planning.scene.planning_scene import PlanningScene
 from robots.planning.search.escape import EscapeChecker
 from robots.planning.worker.scene_planner import GIVEN_PATH, ScenePlanner
 from robots.port import Array
-from tests.robots.planning.scene.test_voxels import grid_of
+from tests.robots.planning.motion_oracle import MotionOracle, fine_steps
+from tests.robots.planning.scene.test_voxels import VOXEL_M, grid_of
 
 PLANNER = ScenePlanner(check_s=2e-5)
 PANDA = alone("panda")
@@ -50,13 +49,9 @@ def request(scene: PlanningScene, goal: tuple[float, ...] = AWAY) -> PlanRequest
 
 
 def gaps_along(scene: PlanningScene, path: Array) -> list[float]:
-    """Return the clearance along a way, every 5 mm of motion."""
-    checker = ExactChecker(scene, ARM)
-    found = [checker.clearance(path[0]).distance_m]
-    for before, after in itertools.pairwise(path):
-        count = checker.steps(before, after, step_m=0.005)
-        found += [checker.clearance(before + (after - before) * i / count).distance_m for i in range(1, count + 1)]
-    return found
+    """Return the clearance along a way in fine steps, as MuJoCo measures it; infinite beyond twice the margin."""
+    oracle = MotionOracle(scene, ARM, margin_m=2.0 * MARGIN_M)
+    return [oracle.gap_m(joints) for joints in fine_steps(path)]
 
 
 def path_of(answer: PlanAnswer) -> Array:
@@ -92,8 +87,12 @@ def test_what_is_left_may_be_what_cameras_see() -> None:
     answer = PLANNER.plan(msgspec.structs.replace(request(PANDA), occupancy=_seen(first_free)))
     path = path_of(answer)
     assert len(path) > 2
-    checker = PLANNER.prepared(PANDA, ARM, occupancy=_seen(first_free), margin_m=MARGIN_M).checker
-    assert checker.first_collision(path[1:]) is None
+    side_m = 10 * VOXEL_M
+    middle = (first_free - 0.1 + side_m / 2, -0.1 + side_m / 2, 0.4 + side_m / 2)
+    block = box("seen", (side_m, side_m, side_m), middle)
+    oracle = MotionOracle(PANDA.with_obstacles(block), ARM, margin_m=MARGIN_M)
+    assert oracle.first_touch(path[1:]) is None
+    assert MotionOracle(PANDA.with_obstacles(block), ARM).first_touch(path) is None
 
 
 def _seen(x: float) -> OccupancyGrid:
