@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import numpy as np
 import pytest
@@ -118,6 +120,17 @@ def test_a_goal_within_the_margin_is_refused() -> None:
     answer = PLANNER.plan(msgspec.structs.replace(request(beside(0.02), HOME), start_rad=AWAY))
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "goal_in_collision"
+    # What was asked for and what is: both numbers.
+    found = re.search(r"is ([\d.]+) mm from block, nearer than the margin of 40 mm", answer.message)
+    assert found is not None, answer.message
+    assert float(found[1]) == pytest.approx(20.0, abs=1.5)
+    assert "reduce the margin" in answer.hint
+
+
+def test_what_touches_is_said_to_touch_whatever_the_margin() -> None:
+    answer = PLANNER.plan(msgspec.structs.replace(request(beside(-0.01), HOME), start_rad=AWAY))
+    assert isinstance(answer, PlanRefusal)
+    assert "touches block" in answer.message
 
 
 def test_leaving_ends_where_the_whole_margin_is_kept_for_once() -> None:

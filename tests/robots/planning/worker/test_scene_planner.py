@@ -241,6 +241,18 @@ def test_no_path_in_time_is_said_with_what_was_tried(planner: str) -> None:
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "no_path_in_time"
     assert "configurations checked" in answer.message
+    assert f"{planner} found no path within 0.2 s" in answer.message
+
+
+def test_no_path_quotes_the_margin_and_the_tolerance_that_were_asked_for() -> None:
+    """With a smaller one there might be a path."""
+    asked = {"margin_m": 0.013, "time_s": 0.1}
+    answer = plan(_caged(), **asked)
+    assert isinstance(answer, PlanRefusal)
+    assert "within 0.1 s with a margin of 13 mm (" in answer.message
+    kept = plan(_caged(), keep_orientation=PathOrientationConstraint(tolerance_rad=3.1), **asked)
+    assert isinstance(kept, PlanRefusal)
+    assert "13 mm, the tool turned by at most 3.1 rad (" in kept.message
 
 
 def test_a_plan_no_longer_wanted_ends() -> None:
