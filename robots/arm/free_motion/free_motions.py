@@ -99,7 +99,8 @@ class FreeMotions:
         if gap.max() > _AT_START_RAD:
             joint = self._runner.model.arm_joints[int(np.argmax(gap))]
             raise GoalRejected(
-                f"the plan does not start at the arm's current joints: {joint} differs by {gap.max():.3f} rad",
+                f"the plan does not start at the arm's current joints: {joint} differs by {gap.max():.3f} rad,"
+                f" at most {_AT_START_RAD:g} rad are allowed",
                 where=handle.address,
                 hint="plan again from the current joints",
             )

@@ -354,10 +354,15 @@ class _Attempt:
         if self._budget.cancelled:
             return PlanRefusal(reason="cancelled", message="the plan request was canceled")
         effort = f"{self._budget.checks} configurations checked, {self._refused} paths rejected by the exact check"
+        request = self._request
+        asked = f" with a margin of {request.margin_m * 1e3:g} mm" if request.margin_m > 0.0 else ""
+        if request.keep_orientation is not None:
+            asked += f", the tool turned by at most {request.keep_orientation.tolerance_rad:g} rad"
         return PlanRefusal(
             reason="no_path_in_time",
-            message=f"{self._request.planner} found no path within {self._request.time_s:g} s ({effort})",
-            hint="allow more time, choose another planner, or remove obstacles",
+            message=f"{request.planner} found no path within {request.time_s:g} s{asked} ({effort})",
+            hint="allow more time, choose another planner, or remove obstacles"
+            + (", or ask for less" if asked else ""),
         )
 
 
