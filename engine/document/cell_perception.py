@@ -1,8 +1,8 @@
-"""Cameras, occupancy map and people in a cell document."""
+"""Cameras, occupancy map, people and unknown bodies in a cell document."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -78,6 +78,20 @@ class OccupancyMap(StrictModel, frozen=True, kw_only=True):
     voxel_m: Annotated[float, Meta(ge=0.005, le=0.1, description="Edge of a voxel in metres")] = 0.02
     robot_margin_m: Offset = 0.04
     known_margin_m: Offset = 0.03
+
+
+class UnknownBody(StrictModel, frozen=True, kw_only=True):
+    """A body of the simulated world that nobody knows of: cameras see it, arms collide with it, and that is all.
+
+    It is no obstacle of planners and no name in lists and checks. `size_m` as for a part; `at` is its centre. With
+    `mass_kg` it is free, without it is fixed. For tests and demonstrations.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    size_m: tuple[Length, ...]
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")] | None = None
+    at: Placement = Placement()
+    color: Color = "#a04040"
 
 
 def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[float, float]:
