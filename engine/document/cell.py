@@ -228,6 +228,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_world(document, source)
     _require_people(document, source)
     _require_unknown_bodies(document, source)
+    _require_regions(document, source)
     _require_topics(document, source)
     return Cell(document=document, file=file, source=source)
 
@@ -355,6 +356,15 @@ def _require_unknown_bodies(document: CellDocument, source: DocumentSource) -> N
                 where=source.position(path, of_key=True),
                 hint="rename one",
             )
+
+
+def _require_regions(document: CellDocument, source: DocumentSource) -> None:
+    if document.occupancy is not None and document.occupancy.must_cover and not document.cameras:
+        raise DocumentError(
+            "regions must be covered, but the cell has no camera",
+            where=source.position(("occupancy", "must_cover"), of_key=True),
+            hint="add `cameras:`",
+        )
 
 
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))
