@@ -72,14 +72,16 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     "weightless unknown body": ("[0.2, 0.2, 0.2],", "[0.2, 0.2, 0.2], mass_kg: 0,", "0,", "Mass in kilograms"),
     "region outside the map": (
         "unknown_bodies:",
-        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], must_cover: {a: {center_m: [0, 0, 0.4], size_m: [1, 1, 1]}}}"
+        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], "
+        "must_cover: {a: {center_m: [0, 0, 0.4], size_m: [1, 1, 1]}}}"
         "\nunknown_bodies:",
         "{center_m",
         "the region a extends 0.400 m beyond the box of the map",
     ),
     "region without a camera": (
         "unknown_bodies:",
-        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], must_cover: {a: {center_m: [0, 0, 0], size_m: [1, 1, 1]}}}"
+        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], "
+        "must_cover: {a: {center_m: [0, 0, 0], size_m: [1, 1, 1]}}}"
         "\nunknown_bodies:",
         "must_cover",
         "regions must be covered, but the cell has no camera",
