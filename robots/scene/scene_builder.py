@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from engine.document import CellDocument, Fixture, Person, RobotSpec
+from engine.document.cell_perception import UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose
@@ -39,6 +40,14 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
         people=tuple(_person(name, person) for name, person in document.people.items()),
+        unknown_fixtures=tuple(
+            _unknown_fixture(name, body) for name, body in document.unknown_bodies.items() if body.mass_kg is None
+        ),
+        unknown_parts=tuple(
+            _unknown_part(name, body, mass_kg=body.mass_kg)
+            for name, body in document.unknown_bodies.items()
+            if body.mass_kg is not None
+        ),
     )
 
 
@@ -98,6 +107,21 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
             )
         )
     return bodies
+
+
+def _unknown_fixture(name: str, body: UnknownBody) -> FixtureBody:
+    return FixtureBody(name=name, shape=body.shape, size_m=body.size_m, pose=body.at.pose(), rgba=_rgba(body.color))
+
+
+def _unknown_part(name: str, body: UnknownBody, *, mass_kg: float) -> PartBody:
+    return PartBody(
+        name=name,
+        shape=body.shape,
+        size_m=body.size_m,
+        mass_kg=mass_kg,
+        pose=body.at.pose(),
+        rgba=_rgba(body.color),
+    )
 
 
 def _person(name: str, person: Person) -> PersonBody:

@@ -112,6 +112,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
 
     In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
     other side reacts, see `robots.port.control_process`; `start_limit_s` limits how long its process builds the world.
+    The unknown bodies are in the physics and in images of cameras, but in no planning scene and among no parts.
     """
 
     step_s: float = 0.001
@@ -123,3 +124,5 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     fixtures: tuple[FixtureBody, ...] = ()
     parts: tuple[PartBody, ...] = ()
     people: tuple[PersonBody, ...] = ()
+    unknown_fixtures: tuple[FixtureBody, ...] = ()
+    unknown_parts: tuple[PartBody, ...] = ()

@@ -67,9 +67,9 @@ def build_cell(scene: SimScene) -> CellModel:
         CellError: a robot model is unknown, a shape is invalid, or MuJoCo rejects the result.
     """
     spec = _empty_world(scene)
-    for fixture in scene.fixtures:
+    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         _add_fixture(spec, fixture)
-    for part in scene.parts:
+    for part in (*scene.parts, *scene.unknown_parts):
         _add_part(spec, part)
     models = {arm.name: arm.robot() for arm in scene.arms}
     for arm in scene.arms:
@@ -83,6 +83,8 @@ def build_cell(scene: SimScene) -> CellModel:
     arms = tuple(_arm_indices(compiled, arm.name, models[arm.name], ferrous=ferrous) for arm in scene.arms)
     frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
     frames += tuple(body for person in scene.people for body in body_names(person.name))
+    # Frames are drawn; only `parts` are known by name.
+    frames += tuple(part.name for part in scene.unknown_parts)
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -198,7 +200,7 @@ def _add_people(spec: Any, scene: SimScene) -> None:
         return
     for person in scene.people:
         add_person(spec, person)
-    let_people_touch(spec, scene.fixtures)
+    let_people_touch(spec, (*scene.fixtures, *scene.unknown_fixtures))
 
 
 def _links(model: Any, arm: str) -> list[str]:
