@@ -25,6 +25,9 @@ class GuidingGenerator(SetpointStream):
         margin_rad: Distance from a limit at which the arm is pushed back.
     """
 
+    name = "guiding"
+    """For messages."""
+
     def __init__(self, *, limits: JointLimits, start: Array, margin_rad: float = 0.03) -> None:
         super().__init__(
             shaper=OnlineTrajectoryGenerator(limits=limits, start=start), values=0, watchdog_s=float("inf")

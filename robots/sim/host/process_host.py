@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 
 from engine.errors import CONNECT_AGAIN, RobotError
-from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed, ReflexTripped
+from robots.control.motion_event import AnyMotionEvent
 from robots.io.worker_process import WorkerProcess
 from robots.port import Array
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
@@ -205,5 +205,5 @@ def _not_open() -> RobotError:
 
 
 def _notify(listener: WorldListener, message: FromWorld) -> None:
-    if isinstance(message, MotionFinished | MotionHeld | MotionResumed | ReflexTripped):
+    if isinstance(message, AnyMotionEvent):
         listener.happened(message)

@@ -42,9 +42,9 @@ def run(
 
 def new_motion(goal: Array, tolerance: Tolerance, *, contact: str = "") -> MotionExecutor:
     """Return an arm's motions with number 7 under way."""
-    motion = MotionExecutor(joints=("shoulder", "elbow"), touching=lambda: contact)
+    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: contact)
     motion.initialize(START)
-    motion.start(7, TrajectoryPlayback(ramp(goal), acceleration_rad_s2=np.full(2, 10.0)), tolerance)
+    motion.start(7, TrajectoryPlayback(ramp(goal), acceleration_rad_s2=np.full(2, 10.0), jerk_rad_s3=np.full(2, 1000.0)), tolerance)
     return motion
 
 
