@@ -67,7 +67,8 @@ def main() -> None:
         "playback": (TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration, jerk_rad_s3=jerk), np.zeros(0)),
         "guarded": (
             GuardedMotion(
-                TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration, jerk_rad_s3=jerk), ContactCondition(force_n=10.0)
+                TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration, jerk_rad_s3=jerk),
+                ContactCondition(force_n=10.0),
             ),
             np.zeros(0),
         ),
@@ -77,7 +78,7 @@ def main() -> None:
             ToolJogGenerator(limits=limits, start=home, watchdog_s=1.0),
             np.array([0.02, 0.0, 0.01, 0, 0, 0]),
         ),
-        "guiding": (GuidingGenerator(limits=limits, start=home), np.zeros(0)),
+        "guiding": (GuidingGenerator(limits=limits, start=home, measured=home), np.zeros(0)),
         "force tracking": (ForceTracking(task, limits=limits, joints=joints), np.zeros(0)),
     }
     for name, (generator, setpoint) in generators.items():

@@ -45,7 +45,6 @@ from engine.skills.motion import CartLinTask
 from engine.skills.planning import MotionTarget, MoveFree
 from engine.skills.simulated_world import PushBody
 from robots.control.motion_event import SetPointJumped
-from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.arm.every_skill import MAKERS, near_home, some
 from tests.robots.panda_arm import panda_kinematics

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from msgspec.structs import replace
@@ -43,6 +44,8 @@ class ArmControlLoop:
         inertia_kg_m2: Diagonal of the mass matrix at home, (n,); determines the joint damping.
         gravity_m_s2: Gravity in the world, (3,).
         touching: Describes what the arm touches; empty for nothing.
+        on_jump: What follows a set point beyond the limits. `report`, in simulation, sends it and reports it; `stop`,
+            for real arms, never sends it: the arm brakes from the last one, and its motion fails with the cause.
     """
 
     def __init__(
@@ -53,6 +56,7 @@ class ArmControlLoop:
         inertia_kg_m2: Array,
         gravity_m_s2: Array,
         touching: Callable[[], str],
+        on_jump: Literal["report", "stop"] = "report",
     ) -> None:
         model, limits = kinematics.model, kinematics.limits
         self.name = name
@@ -68,6 +72,7 @@ class ArmControlLoop:
         self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
         self.watch = SetPointWatch(arm=name, joints=model.arm_joints, limits=limits)
         """Compares every set point with the limits."""
+        self._on_jump = on_jump
         self._reflex = CollisionReflex(joints=model.arm_joints, touching=touching)
         cartesian = CartesianImpedance(
             limits, mass_matrix=kinematics.mass_matrix, base_rotation=kinematics.base.rotation
@@ -180,6 +185,9 @@ class ArmControlLoop:
         jump = self.watch.look(step_s, self.motion)
         if jump is not None:
             events.append(jump)
+            if self._on_jump == "stop":
+                self.motion.reject(jump.reason, self.watch.reject())
+                self.watch.look(step_s, self.motion)
         return events
 
     def torque(self, feedforward_nm: Array, *, step_s: float) -> Array:

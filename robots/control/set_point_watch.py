@@ -24,6 +24,11 @@ _ONE_JUMP_STEPS = 4
 _log = logging.getLogger("flexcell.set_points")
 
 
+def report_jump(jump: SetPointJumped) -> None:
+    """Write a jump to the log `flexcell.set_points`; handlers find it as `jump` of the record."""
+    _log.warning("%s", jump.reason, extra={"jump": jump})
+
+
 class WatchedSetPoint(Protocol):
     """The set point of an arm and what generates it."""
 
@@ -75,18 +80,24 @@ class SetPointWatch:
             )
         )
         self._past = np.zeros((3, len(joints)))
+        self._before = np.zeros((3, len(joints)))
         self._worst = np.zeros(3)
-        self._time_s = 0.0
+        self._time_s = self._step_s = 0.0
         self._generator = self._previous = ""
         self._steps_since_change = 0
         self._steps_since_jump = _ONE_JUMP_STEPS
         self.count = 0
         """Jumps until now."""
 
-    @property
-    def past(self) -> Array:
-        """Position, velocity and acceleration of the last set point, (3, n)."""
-        return self._past
+    def reject(self) -> Array:
+        """Return position, velocity and acceleration of the last set point before a jump, (3, n), and continue there.
+
+        Call it after `look` has returned a jump, with a set point that is not sent.
+        """
+        self._past[:] = self._before
+        self._steps_since_jump = _ONE_JUMP_STEPS
+        self._time_s -= self._step_s
+        return self._before
 
     def restart(self, position: Array, velocity: Array | None = None) -> None:
         """Continue from `position` without a past: the set point starts anew there."""
@@ -97,11 +108,13 @@ class SetPointWatch:
 
     def look(self, step_s: float, set_point: WatchedSetPoint) -> SetPointJumped | None:
         """Compare the set point of this period; return a jump that is not part of the last one."""
+        self._step_s = step_s
         self._time_s += step_s
         self._follow_generator(set_point.generator_name)
         if not set_point.leads:
             self.restart(set_point.position, set_point.velocity)
             return None
+        self._before[:] = self._past
         quantity = self._compare(step_s, set_point.position, self._past, self._limits, self._worst)
         self._steps_since_jump += 1
         if quantity == 0:
@@ -112,7 +125,7 @@ class SetPointWatch:
             return None
         self.count += 1
         jump = self._jump(quantity, set_point.number)
-        _log.warning("%s", jump.reason, extra={"jump": jump})
+        report_jump(jump)
         return jump
 
     def _follow_generator(self, name: str) -> None:

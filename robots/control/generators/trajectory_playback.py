@@ -14,6 +14,10 @@ SHORTEST_STOP_S = 0.1
 # Stopping uses this share of the joints' acceleration and jerk; the rest is reserved for tracking.
 _ACCELERATION_SHARE = 0.9
 _JERK_SHARE = 0.85
+# A set point that moves by this within a period exceeds no limit.
+_SAME_RAD = 1e-7
+# While a path that begins with a push p″ gathers pace, its jerk reaches 3 p″s̈.
+_FIRST_PACE = 3.0
 
 
 class TrajectoryPlayback:
@@ -58,6 +62,8 @@ class TrajectoryPlayback:
         self._dt_s = trajectory.dt_s
         self._acceleration = acceleration_rad_s2 * _ACCELERATION_SHARE
         self._jerk = jerk_rad_s3 * _JERK_SHARE
+        # Time in which the jerk limits allow the acceleration at the start of the path.
+        self._first_jerk_s = float((self._first_acceleration() / self._jerk).max())
         self.duration_s = trajectory.duration_s
         self.passed_s = 0.0
         self.pace = 1.0
@@ -104,8 +110,8 @@ class TrajectoryPlayback:
     def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
         """Advance by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
         if self.passed_s == 0.0:
-            # It starts at rest, where any pace is possible.
-            self.pace, self._rate = target_pace, 0.0
+            # It starts at rest, where any pace is possible, unless the path begins with a push.
+            self.pace, self._rate = (0.0 if self._first_jerk_s > step_s else target_pace), 0.0
         if self.pace == target_pace and self._rate == 0.0:
             self.passed_s = min(self.passed_s + self.pace * step_s, self.duration_s)
         else:
@@ -122,7 +128,7 @@ class TrajectoryPlayback:
             self._dt_s,
             step_s,
             target,
-            1.0 / self._shortest_stop_s,
+            1.0 / max(self._shortest_stop_s, _FIRST_PACE * self._first_jerk_s),
             self._acceleration,
             self._jerk,
             self._peak,
@@ -136,6 +142,11 @@ class TrajectoryPlayback:
         last = len(self._points) - 2
         index = min(int(self.passed_s / self._dt_s), last)
         return index, self.passed_s / self._dt_s - index
+
+    def _first_acceleration(self) -> Array:
+        first, second = self._slopes[0], self._slopes[1]
+        rise = (self._points[1] - self._points[0]) / self._dt_s
+        return np.abs(6.0 * rise - 4.0 * first - 2.0 * second) / self._dt_s
 
     def _set_point(self) -> None:
         if self.at_end:
@@ -175,9 +186,9 @@ def validate_trajectory(trajectory: JointTrajectory, *, start_rad: Array, joints
         raise RobotError("the trajectory has values that are not finite, or dt_s is not positive")
     gap = np.abs(position[0] - start_rad)
     worst = int(np.argmax(gap))
-    if gap[worst] > 0.01:
+    if gap[worst] > _SAME_RAD:
         raise RobotError(
-            f"the trajectory starts {gap[worst]:.3f} rad from the set point of {joints[worst]}",
+            f"the trajectory starts {gap[worst]:.3g} rad from the set point of {joints[worst]}",
             hint="plan from ArmSample.desired_rad",
         )
     if np.abs(velocity[[0, -1]]).max() > 0.01:

@@ -1,4 +1,4 @@
-"""Yields after a failure: the set point comes to rest, then moves to where the arm is, so that it presses on nothing."""
+"""After a failure: the set point comes to rest, then moves to where the arm is, so that it presses on nothing."""
 
 from __future__ import annotations
 

@@ -95,10 +95,12 @@ class SimArmLoop:
                 control.start(command.motion, self._listener(command), Tolerance())
             case StartGuiding():
                 control.float_with(damping_share=command.damping)
-                start = self._physics.positions[self.indices.qpos]
-                control.start(
-                    command.motion, GuidingGenerator(limits=self.indices.model.limits, start=start), Tolerance()
+                guiding = GuidingGenerator(
+                    limits=self.indices.model.limits,
+                    start=control.motion.position,
+                    measured=self._physics.positions[self.indices.qpos],
                 )
+                control.start(command.motion, guiding, Tolerance())
             case Setpoint():
                 control.motion.receive(command.motion, np.array(command.values), age_s=command.age_s)
             case FinishStream():
@@ -137,7 +139,9 @@ class SimArmLoop:
         trajectory, limits, jerk = command.trajectory, self._acceleration_rad_s2, self._jerk_rad_s3
         if command.until is None:
             return TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk)
-        inner = TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk, shortest_stop_s=GUARDED_STOP_S)
+        inner = TrajectoryPlayback(
+            trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk, shortest_stop_s=GUARDED_STOP_S
+        )
         return GuardedMotion(inner, command.until)
 
     def _listener(self, command: StartStream) -> MotionGenerator:

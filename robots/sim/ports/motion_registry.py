@@ -6,7 +6,14 @@ import asyncio
 from collections.abc import Callable
 
 from engine.errors import CONNECT_AGAIN, RobotError
-from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped, SetPointJumped
+from robots.control.motion_event import (
+    AnyMotionEvent,
+    MotionFinished,
+    MotionHeld,
+    MotionResumed,
+    ReflexTripped,
+    SetPointJumped,
+)
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands.world_commands import AnyCommand, CancelMotion, HoldMotion, ResumeMotion
 

@@ -65,7 +65,9 @@ def test_at_any_sequence_of_paces_the_path_is_never_left_nor_the_acceleration_ex
     paces: list[tuple[float, int]], shortest_stop_s: float
 ) -> None:
     trajectory = winding(3.0)
-    playback = TrajectoryPlayback(trajectory, acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK, shortest_stop_s=shortest_stop_s)
+    playback = TrajectoryPlayback(
+        trajectory, acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK, shortest_stop_s=shortest_stop_s
+    )
     positions, velocities, passed = [playback.position.copy()], [playback.velocity.copy()], [0.0]
     for pace, steps in [*paces, (1.0, 3200)]:
         for _ in range(steps):
@@ -112,7 +114,9 @@ def test_undisturbed_it_takes_its_own_time_and_ends_at_rest_at_the_goal() -> Non
 
 
 def test_between_coarse_samples_the_set_point_follows_the_same_curve() -> None:
-    coarse = TrajectoryPlayback(smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.02), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK)
+    coarse = TrajectoryPlayback(
+        smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.02), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK
+    )
     fine = smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.001)
     for index in range(1, 1000):
         coarse.step(0.001, target_pace=1.0)
@@ -137,7 +141,8 @@ def test_a_stop_takes_at_least_a_tenth_of_a_second_even_when_slow() -> None:
         (np.zeros((5, 3)), np.zeros((5, 3)), "not a trajectory for 2 joints"),
         (np.zeros((1, 2)), np.zeros((1, 2)), "not a trajectory"),
         (np.full((5, 2), np.nan), np.zeros((5, 2)), "not finite"),
-        (np.full((5, 2), 0.2), np.zeros((5, 2)), r"0\.200 rad from the set point of shoulder"),
+        (np.full((5, 2), 0.2), np.zeros((5, 2)), r"0\.2 rad from the set point of shoulder"),
+        (np.full((5, 2), 1e-6), np.zeros((5, 2)), r"1e-06 rad from the set point of shoulder"),
         (np.zeros((5, 2)), np.ones((5, 2)), "at rest"),
     ],
 )

@@ -210,6 +210,7 @@ def test_what_a_world_has_nothing_of_is_absent() -> None:
                 "tracking_error_max_rad",
                 "force_max_n",
                 "torque_max_nm",
+                "set_point_jumps",
             )
         ),
     }
