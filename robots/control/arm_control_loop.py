@@ -186,7 +186,7 @@ class ArmControlLoop:
         if jump is not None:
             events.append(jump)
             if self._on_jump == "stop":
-                self.motion.reject(jump.reason, self.watch.reject())
+                self.motion.reject(jump.reason, self.watch.reject(), step_s=step_s)
                 self.watch.look(step_s, self.motion)
         return events
 

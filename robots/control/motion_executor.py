@@ -99,7 +99,7 @@ class MotionExecutor:
         if following and following.ending is not MotionEnd.FAILED:
             following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
 
-    def reject(self, reason: str, past: Array) -> None:
+    def reject(self, reason: str, past: Array, *, step_s: float) -> None:
         """Replace the present set point by a stop from the last one, `past` (3, n), and end the motion as FAILED.
 
         `past` has position, velocity and acceleration. Without a motion, or where the arm leads, the last one is held.
@@ -112,6 +112,7 @@ class MotionExecutor:
         self.fail(reason)
         self._yield_from(past[0], past[1], past[2])
         assert self._yielding is not None
+        self._yielding.step(step_s, past[0])
         self._take(self._yielding)
 
     def receive(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
