@@ -10,7 +10,7 @@ import pytest
 
 from robots.control.arm_control_loop import ArmControlLoop
 from robots.control.generators.joint_jogging import JointJogGenerator
-from robots.control.motion_event import MotionFinished, SetPointJumped
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, SetPointJumped
 from robots.control.set_point_watch import SetPointWatch
 from robots.port import Array, MotionEnd, Tolerance
 from tests.robots.control.limit_watch import STEP_S, limits
@@ -130,7 +130,8 @@ def test_an_arm_that_may_not_jump_brakes_from_its_last_set_point_and_fails_with_
     jog = JumpingJog(limits=model.limits, start=home(), watchdog_s=10.0)
     control.start(1, jog, Tolerance())
     control.motion.receive(1, np.full(7, 0.5))
-    sent, events, velocity = [home()] * 3, [], np.zeros(7)
+    sent, velocity = [home()] * 3, np.zeros(7)
+    events: list[AnyMotionEvent] = []
     for _ in range(1500):
         control.measure(sent[-1], velocity, pull_nm=np.zeros(7), wrench=np.zeros(6), step_s=STEP_S)
         events.extend(control.advance(STEP_S))
