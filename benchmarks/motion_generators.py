@@ -60,13 +60,15 @@ def main() -> None:
     state = ArmState(ArmKinematics(model, base=RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))))
     home, limits, joints = np.array(model.home_rad), model.limits, model.arm_joints
     trajectory, acceleration = swing(home, periods * STEP_S), np.array(limits.acceleration_rad_s2)
+    jerk = np.array(limits.jerk_rad_s3)
     samples = len(trajectory.position_rad)
     task = ForceTask(trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)))
     generators: dict[str, tuple[MotionGenerator, Array]] = {
-        "playback": (TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration), np.zeros(0)),
+        "playback": (TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration, jerk_rad_s3=jerk), np.zeros(0)),
         "guarded": (
             GuardedMotion(
-                TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration), ContactCondition(force_n=10.0)
+                TrajectoryPlayback(trajectory, acceleration_rad_s2=acceleration, jerk_rad_s3=jerk),
+                ContactCondition(force_n=10.0),
             ),
             np.zeros(0),
         ),
@@ -76,7 +78,7 @@ def main() -> None:
             ToolJogGenerator(limits=limits, start=home, watchdog_s=1.0),
             np.array([0.02, 0.0, 0.01, 0, 0, 0]),
         ),
-        "guiding": (GuidingGenerator(limits=limits, start=home), np.zeros(0)),
+        "guiding": (GuidingGenerator(limits=limits, start=home, measured=home), np.zeros(0)),
         "force tracking": (ForceTracking(task, limits=limits, joints=joints), np.zeros(0)),
     }
     for name, (generator, setpoint) in generators.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import inspect
+import logging
 import os
 import sys
 from collections.abc import Generator
@@ -38,6 +39,7 @@ def pytest_configure(config: pytest.Config) -> None:
         "browser: drives a real browser (set by what the file imports, see tests/tiers.py)",
         "process: starts processes (set by what the file imports)",
         "physics: steps a simulated world (set by what the file imports)",
+        "jumps: its set points may jump: it is about that",
         "nightly: more of what other values show already; run with --nightly",
     ):
         config.addinivalue_line("markers", line)
@@ -110,6 +112,32 @@ def _values(item: pytest.Function) -> list[str]:
     """The texts among the values that a test is called with."""
     values = item.callspec.params.values() if hasattr(item, "callspec") else ()
     return [each for each in values if isinstance(each, str)]
+
+
+@pytest.fixture(autouse=True)
+def _set_points_never_jump(request: pytest.FixtureRequest) -> Generator[None]:  # pyright: ignore[reportUnusedFunction]
+    """Fail a test in which a set point of an arm jumps; a test about jumps is marked `jumps`."""
+    reports = JumpReports()
+    log = logging.getLogger("flexcell.set_points")
+    log.addHandler(reports)
+    try:
+        yield
+    finally:
+        log.removeHandler(reports)
+    if request.node.get_closest_marker("jumps") is None:
+        assert not reports.reasons, "\n".join(reports.reasons)
+
+
+class JumpReports(logging.Handler):
+    """Collects what the watches of set points report."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.reasons: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take a report."""
+        self.reasons.append(record.getMessage())
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from msgspec.structs import replace
@@ -20,6 +21,7 @@ from robots.control.laws.joint_impedance import JointImpedance, nominal_stiffnes
 from robots.control.laws.torque_blend import TorqueBlend
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTripped
 from robots.control.motion_executor import MotionExecutor
+from robots.control.set_point_watch import SetPointWatch
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, MotionEnd, MotionReport, Tolerance
@@ -42,6 +44,8 @@ class ArmControlLoop:
         inertia_kg_m2: Diagonal of the mass matrix at home, (n,); determines the joint damping.
         gravity_m_s2: Gravity in the world, (3,).
         touching: Describes what the arm touches; empty for nothing.
+        on_jump: What follows a set point beyond the limits. `report`, in simulation, sends it and reports it; `stop`,
+            for real arms, never sends it: the arm brakes from the last one, and its motion fails with the cause.
     """
 
     def __init__(
@@ -52,6 +56,7 @@ class ArmControlLoop:
         inertia_kg_m2: Array,
         gravity_m_s2: Array,
         touching: Callable[[], str],
+        on_jump: Literal["report", "stop"] = "report",
     ) -> None:
         model, limits = kinematics.model, kinematics.limits
         self.name = name
@@ -60,11 +65,14 @@ class ArmControlLoop:
         """Tool centre point in the frame of the tool link, (3,), from the settings."""
         self.state = ArmState(kinematics)
         self._touching = touching
-        self.motion = MotionExecutor(joints=model.arm_joints, touching=self._felt)
+        self.motion = MotionExecutor(joints=model.arm_joints, limits=limits, touching=self._felt)
         self._kinematics = kinematics
         self._inertia = inertia_kg_m2
         self._limit_nm = np.array(limits.effort_nm)
         self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
+        self.watch = SetPointWatch(arm=name, joints=model.arm_joints, limits=limits)
+        """Compares every set point with the limits."""
+        self._on_jump = on_jump
         self._reflex = CollisionReflex(joints=model.arm_joints, touching=touching)
         cartesian = CartesianImpedance(
             limits, mass_matrix=kinematics.mass_matrix, base_rotation=kinematics.base.rotation
@@ -102,6 +110,7 @@ class ArmControlLoop:
     def initialize(self, position: Array, *, reflex: bool = False) -> None:
         """Hold `position`, with or without an active reflex; drops the active motion and the filtered forces."""
         self.motion.initialize(position)
+        self.watch.restart(position)
         self.state.external_nm[:] = 0.0
         self.state.wrench[:] = 0.0
         self._load.forget_motion()
@@ -147,6 +156,7 @@ class ArmControlLoop:
         self._reflex.reason = ""
         if self.motion.number == 0:
             self.motion.initialize(self.state.position)
+            self.watch.restart(self.state.position)
 
     def measure(self, position: Array, velocity: Array, *, pull_nm: Array, wrench: Array, step_s: float) -> None:
         """Take the measurements of a period.
@@ -172,6 +182,12 @@ class ArmControlLoop:
             self.motion.fail(self._reflex.reason)
             events.append(ReflexTripped(motion=self.motion.number, arm=self.name, reason=self._reflex.reason))
         events.extend(self.motion.step(step_s, self.state))
+        jump = self.watch.look(step_s, self.motion)
+        if jump is not None:
+            events.append(jump)
+            if self._on_jump == "stop":
+                self.motion.reject(jump.reason, self.watch.reject(), step_s=step_s)
+                self.watch.look(step_s, self.motion)
         return events
 
     def torque(self, feedforward_nm: Array, *, step_s: float) -> Array:

@@ -13,6 +13,17 @@ from robots.compiled import compiled
 from robots.port import Array
 
 _SMALL = 1e-12
+# Slower joints do not limit the pace of a trajectory.
+_STANDS = 1e-9
+# A pace may change by this share of the jerk limit where the path itself takes all of it.
+_LEAST_JERK_SHARE = 0.05
+_HARDEST_STOP = 1.1
+# The pace that is wanted is reached where so small a share of the jerk limit is missing.
+_SNAP_SHARE = 0.05
+# A pace approaches a faster one with this time constant at least.
+_SPEED_UP_S = 0.02
+# A change of pace fades with this share of the jerk limit: the path may need the rest.
+_FADING_SHARE = 0.5
 _ROW, _TABLE, _ANY = "f8[::1]", "f8[:,::1]", "f8[:,:]"
 
 
@@ -48,6 +59,95 @@ def interpolate_setpoint(
         position[joint] = at0 * p0 + at1 * p1 + h * (by0 * v0 + by1 * v1)
         velocity[joint] = slope * pace
         acceleration[joint] = curvature * pace_squared + slope * pace_change
+
+
+@compiled("f8(f8, f8, f8, f8, f8, f8)")
+def _rise_towards(missing: float, rise: float, step_s: float, fades: float, lowest: float, highest: float) -> float:
+    """Return the rate at the end of a period from which it can fade to 0 where nothing is `missing` any more.
+
+    `fades` is the change of the rate per second with which it fades, `lowest` and `highest` are the largest rates
+    downwards and upwards; all are positive.
+    """
+    # Where it would end if the rate faded at once.
+    left = missing - rise * abs(rise) / (2.0 * fades)
+    sign = 1.0 if left > 0.0 else -1.0
+    room = 2.0 * sign * (missing - rise * step_s / 2.0) / fades + step_s * step_s
+    size = fades * (math.sqrt(room) - step_s) if room > step_s * step_s else 0.0
+    if sign > 0.0:
+        # Too fast a pace exceeds the speed that was planned, where the path keeps the rate from fading.
+        return min(size, highest, missing / _SPEED_UP_S)
+    return -min(size, lowest)
+
+
+@compiled(f"void({_TABLE}, {_TABLE}, i8, f8, f8, f8, f8, f8, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
+def advance_pace(
+    points: Array,
+    slopes: Array,
+    index: int,
+    u: float,
+    h: float,
+    step_s: float,
+    target: float,
+    fastest: float,
+    most: Array,
+    hardest: Array,
+    peak: Array,
+    pace: Array,
+) -> None:
+    """Bring the pace ṡ of a trajectory towards `target` within a period, and its rate s̈ to 0 there.
+
+    `pace` (3,) has ṡ, s̈ and what s passes in the period. The spline is that of `interpolate_setpoint`, at the share
+    `u` after sample `index`. No joint's p″ṡ² + p′s̈ exceeds `most`, and no p‴ṡ³ + 3p″ṡs̈ + p′s⃛ `hardest`, as far as
+    s̈ and s⃛ can bring that about; |s̈| is at most `fastest`. `peak` (n,) are the
+    joints' largest |p′|. Where the path bends, 10 % more of `most` precede jerk.
+    """
+    rate, rise = pace[0], pace[1]
+    lowest, highest = -fastest, fastest
+    floor, ceiling = -2.0 * fastest, 2.0 * fastest
+    fall, climb = -fastest / step_s, fastest / step_s
+    fades = climb
+    last = len(points) - 1
+    for joint in range(points.shape[1]):
+        v0, v1 = slopes[index, joint], slopes[index + 1, joint]
+        along = (points[index + 1, joint] - points[index, joint]) / h
+        slope = (6 * u - 6 * u * u) * along + (1 - 4 * u + 3 * u * u) * v0 + (3 * u * u - 2 * u) * v1
+        if abs(slope) <= _STANDS:
+            continue
+        bend = ((6 - 12 * u) * along + (6 * u - 4) * v0 + (6 * u - 2) * v1) / h
+        twist = (6 * (v0 + v1) - 12 * along) / (h * h)
+        # What the path asks for itself may change before the pace has.
+        ahead = min(index + 2, last)
+        onward = (points[ahead, joint] - points[ahead - 1, joint]) / h
+        next_twist = (6 * (slopes[ahead - 1, joint] + slopes[ahead, joint]) - 12 * onward) / (h * h)
+        size = abs(slope)
+        turned = 1.0 if slope > 0.0 else -1.0
+        square = turned * rate * rate
+        first = square * bend
+        second = square * (2 * v0 + 4 * v1 - 6 * along) / h
+        third = square * (6 * onward - 4 * slopes[ahead - 1, joint] - 2 * slopes[ahead, joint]) / h
+        fourth = square * (2 * slopes[ahead - 1, joint] + 4 * slopes[ahead, joint] - 6 * onward) / h
+        pushed, pulled = max(first, second, third, fourth), min(first, second, third, fourth)
+        lowest = max(lowest, min(0.0, (-most[joint] - pulled) / size))
+        highest = min(highest, max(0.0, (most[joint] - pushed) / size))
+        floor = max(floor, min(0.0, (-_HARDEST_STOP * most[joint] - pulled) / size))
+        ceiling = min(ceiling, max(0.0, (_HARDEST_STOP * most[joint] - pushed) / size))
+        cube = turned * rate * rate * rate
+        bent = turned * 3.0 * bend * rate * rise
+        least = _LEAST_JERK_SHARE * hardest[joint]
+        fall = max(fall, -max(least, hardest[joint] + bent + min(twist * cube, next_twist * cube)) / size)
+        climb = min(climb, max(least, hardest[joint] - bent - max(twist * cube, next_twist * cube)) / size)
+        fades = min(fades, _FADING_SHARE * hardest[joint] / max(size, _FADING_SHARE * peak[joint]))
+    wanted = _rise_towards(target - rate, rise, step_s, fades, -lowest, highest)
+    wanted = min(max(wanted, rise + fall * step_s), rise + climb * step_s)
+    wanted = min(max(wanted, floor), ceiling)
+    reached = rate + (rise + wanted) * step_s / 2.0
+    little = _SNAP_SHARE * fades * step_s
+    if abs(reached - target) <= little * step_s and abs(wanted) <= little:
+        reached, wanted = target, 0.0
+    if reached < 0.0:
+        reached, wanted = 0.0, 0.0
+    pace[2] = max(0.0, rate * step_s + (2.0 * rise + wanted) * step_s * step_s / 6.0)
+    pace[0], pace[1] = reached, wanted
 
 
 @compiled(f"void({_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
@@ -179,3 +279,39 @@ def impedance_torque(
             total += jacobian[row, joint] * pull[row]
         torque[joint] = total
     return True
+
+
+@compiled(f"i8(f8, {_ROW}, {_TABLE}, {_TABLE}, {_ROW})")
+def compare_set_point(step_s: float, position: Array, past: Array, limits: Array, worst: Array) -> int:
+    """Compare a set point `position` (n,) with `limits` and with its past, and make it the latest of the past.
+
+    `past` (3, n) has position, velocity and acceleration of the period before, as differences of positions; `limits`
+    (5, n) the range, then the largest velocity, acceleration and jerk. Returns 0, or 1 for position, 2 for velocity,
+    3 for acceleration, 4 for jerk, the first of them that a joint exceeds; `worst` (3,) is then that joint, its value
+    and the limit. A joint beyond its range may stay there, but not go farther.
+    """
+    exceeded = 5
+    largest = 0.0
+    for joint in range(len(position)):
+        now, before = position[joint], past[0, joint]
+        velocity = (now - before) / step_s
+        acceleration = (velocity - past[1, joint]) / step_s
+        jerk = (acceleration - past[2, joint]) / step_s
+        past[0, joint], past[1, joint], past[2, joint] = now, velocity, acceleration
+        quantity, value, limit = 5, 0.0, 1.0
+        if now > limits[1, joint] and velocity > 0.0:
+            quantity, value, limit = 1, now, limits[1, joint]
+        elif now < limits[0, joint] and velocity < 0.0:
+            quantity, value, limit = 1, now, limits[0, joint]
+        elif abs(velocity) > limits[2, joint]:
+            quantity, value, limit = 2, velocity, limits[2, joint]
+        elif abs(acceleration) > limits[3, joint]:
+            quantity, value, limit = 3, acceleration, limits[3, joint]
+        elif abs(jerk) > limits[4, joint]:
+            quantity, value, limit = 4, jerk, limits[4, joint]
+        elif not math.isfinite(now):
+            quantity, value, limit = 1, now, limits[1, joint]
+        if quantity < exceeded or (quantity == exceeded and quantity < 5 and abs(value) / limit > largest):
+            exceeded, largest = quantity, abs(value) / limit if limit > 0.0 else 0.0
+            worst[0], worst[1], worst[2] = joint, value, limit
+    return exceeded % 5

@@ -39,4 +39,19 @@ class ReflexTripped(MotionEvent, frozen=True, kw_only=True, tag="reflex"):
     reason: str
 
 
-AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed | ReflexTripped
+class SetPointJumped(MotionEvent, frozen=True, kw_only=True, tag="jumped"):
+    """A set point exceeded a limit of the arm; `motion` is the active motion, 0 for none.
+
+    It changed from the generator `before` to `generator` within the last periods, or both are the same. `quantity` is
+    position, velocity, acceleration or jerk, and `ratio` its share of the limit.
+    """
+
+    arm: str
+    before: str
+    generator: str
+    quantity: str
+    ratio: float
+    reason: str
+
+
+AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed | ReflexTripped | SetPointJumped

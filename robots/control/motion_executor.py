@@ -9,13 +9,13 @@ import numpy as np
 
 from robots.control.arm_state import ArmState
 from robots.control.generators.motion_generator import MotionGenerator, StreamGenerator
+from robots.control.generators.yielding import YieldGenerator
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.model.robot_model import JointLimits
 from robots.port import Array, MotionEnd, MotionReport, Tolerance
 
 _REST_RAD_S = 0.01
 _REST_S = 0.02
-# After a failure the set point moves to the measured joints within this time, so that the arm presses on nothing.
-_YIELD_S = 0.1
 _STILL_MOVING_AFTER_S = 3.0
 
 
@@ -44,13 +44,14 @@ class MotionExecutor:
     control period with the measured arm. `pace` is the speed override of every motion.
     """
 
-    def __init__(self, *, joints: tuple[str, ...], touching: Callable[[], str]) -> None:
+    def __init__(self, *, joints: tuple[str, ...], limits: JointLimits, touching: Callable[[], str]) -> None:
         self._joints = joints
+        self._limits = limits
         self._touching = touching
         self._following: _ActiveMotion | None = None
         self._rest_s = 0.0
         self.pace = 1.0
-        self._yielding: tuple[Array, Array, float] | None = None
+        self._yielding: YieldGenerator | None = None
         self.position = np.zeros(len(joints))
         self.velocity = np.zeros(len(joints))
         self.acceleration = np.zeros(len(joints))
@@ -65,6 +66,17 @@ class MotionExecutor:
     def number(self) -> int:
         """Number of the active motion, 0 for none."""
         return self._following.number if self._following else 0
+
+    @property
+    def generator_name(self) -> str:
+        """What generates the set point, and whether it comes to rest; for messages."""
+        following = self._following
+        if following is None:
+            return "rest"
+        if self._yielding is not None:
+            return self._yielding.name
+        stops = following.hold or following.ending is not None
+        return following.generator.name + (" to rest" if stops else "")
 
     @property
     def progress(self) -> float:
@@ -86,6 +98,22 @@ class MotionExecutor:
         following = self._following
         if following and following.ending is not MotionEnd.FAILED:
             following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
+
+    def reject(self, reason: str, past: Array, *, step_s: float) -> None:
+        """Replace the present set point by a stop from the last one, `past` (3, n), and end the motion as FAILED.
+
+        `past` has position, velocity and acceleration. Without a motion, or where the arm leads, the last one is held.
+        """
+        following = self._following
+        if following is None or not following.generator.leads:
+            self.position[:] = past[0]
+            self._stand_still()
+            return
+        self.fail(reason)
+        self._yield_from(past[0], past[1], past[2])
+        assert self._yielding is not None
+        self._yielding.step(step_s, past[0])
+        self._take(self._yielding)
 
     def receive(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
         """Pass on values sent to a stream `age_s` ago; ignored without such a stream."""
@@ -132,7 +160,8 @@ class MotionExecutor:
         if following is None:
             return ()
         if self._yielding is not None:
-            self._yield(step_s)
+            self._yielding.step(step_s, position)
+            self._take(self._yielding)
         else:
             target = 0.0 if following.hold or following.ending is not None else self.pace
             following.generator.step(step_s, target_pace=target, state=state)
@@ -146,7 +175,7 @@ class MotionExecutor:
         self._rest_s = self._rest_s + step_s if np.maximum.reduce(np.abs(velocity)) < _REST_RAD_S else 0.0
         return self._rest_s >= _REST_S
 
-    def _take(self, generator: MotionGenerator) -> None:
+    def _take(self, generator: MotionGenerator | YieldGenerator) -> None:
         self.position[:] = generator.position
         self.velocity[:] = generator.velocity
         self.acceleration[:] = generator.acceleration
@@ -172,13 +201,15 @@ class MotionExecutor:
         self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         generator = following.generator
+        if self._yielding is not None:
+            return self._end_when_at_rest(following, step_s, at_rest=at_rest)
         if following.resume_pending and generator.moving:
             following.resume_pending = False
             return (MotionResumed(motion=following.number, request=following.request),)
         if not generator.stopped:
             return ()
         if following.ending is not None:
-            return self._end_when_at_rest(following, step_s, position, at_rest=at_rest)
+            return self._end_when_at_rest(following, step_s, at_rest=at_rest)
         if following.hold:
             if not at_rest or following.held_reported:
                 return ()
@@ -203,14 +234,14 @@ class MotionExecutor:
         return ()
 
     def _end_when_at_rest(
-        self, following: _ActiveMotion, step_s: float, position: Array, *, at_rest: bool
+        self, following: _ActiveMotion, step_s: float, *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         ending = following.ending or MotionEnd.CANCELED
         if ending is MotionEnd.FAILED and self._yielding is None:
-            self._yielding = (self.position.copy(), position.copy(), 0.0)
+            self._yield_from(self.position, self.velocity, self.acceleration)
             return ()
         following.waited_s += step_s
-        if self._yielding is not None and self._yielding[2] < 1.0:
+        if self._yielding is not None and not self._yielding.complete:
             return ()
         if at_rest:
             if following.stop_cause and not following.reason:
@@ -222,13 +253,10 @@ class MotionExecutor:
             return self._finish(following, MotionEnd.FAILED, reason, at_rest=False)
         return ()
 
-    def _yield(self, step_s: float) -> None:
-        assert self._yielding is not None
-        start, target, share = self._yielding
-        share = min(1.0, share + step_s / _YIELD_S)
-        self._yielding = (start, target, share)
-        self.position[:] = start + share * (target - start)
-        self._stand_still()
+    def _yield_from(self, position: Array, velocity: Array, acceleration: Array) -> None:
+        self._yielding = YieldGenerator(
+            limits=self._limits, position=position, velocity=velocity, acceleration=acceleration
+        )
 
     def _finish(
         self, following: _ActiveMotion, end: MotionEnd, reason: str, *, at_rest: bool = True

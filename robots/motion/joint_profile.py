@@ -18,6 +18,9 @@ profiles: Any = ruckig
 ACCELERATION_SHARE = 0.5
 """Share of the joints' acceleration used at speed 1; the rest is reserved for holding, stopping and tracking."""
 
+JERK_SHARE = 0.95
+"""Share of the joints' jerk used by planned motions; the interpolation between two samples may overshoot it."""
+
 _SAMPLE_S = 0.002
 # Maximum number of samples of a slow motion: the shape of the profile does not depend on its duration.
 _MOST_SAMPLES = 20_000
@@ -38,12 +41,11 @@ def plan_joints(
     speed: float,
     limits: JointLimits,
     joint_names: tuple[str, ...],
-    jerk_limited: bool = False,
 ) -> JointTrajectory:
     """Return the trajectory from `start` to `goal` (radians, shape (n,)), at rest at both ends.
 
-    `speed` in (0, 1] is the share of the joint velocity limits; accelerations scale with it. With
-    `jerk_limited` the acceleration is ramped within the joint jerk limits.
+    `speed` in (0, 1] is the share of the joint velocity limits; accelerations scale with it, and are
+    ramped within the joint jerk limits.
 
     Raises:
         RobotError: the goal has a wrong number of joints, or a joint more than 1 mrad beyond its limit; the speed is
@@ -60,7 +62,7 @@ def plan_joints(
     request.current_position, request.target_position = [0.0], [farthest]
     request.max_velocity = [_slowest(limits.velocity_rad_s, shares) * speed * _VELOCITY_SHARE]
     request.max_acceleration = [_slowest(limits.acceleration_rad_s2, shares) * speed * ACCELERATION_SHARE]
-    request.max_jerk = [_slowest(limits.jerk_rad_s3, shares) if jerk_limited else math.inf]
+    request.max_jerk = [_slowest(limits.jerk_rad_s3, shares) * JERK_SHARE]
     profile = profiles.Trajectory(1)
     outcome = profiles.Ruckig(1).calculate(request, profile)
     if outcome not in (profiles.Result.Working, profiles.Result.Finished):

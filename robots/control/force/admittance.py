@@ -10,6 +10,8 @@ from robots.port import Array
 # While the loop only yields, forces up to this much above the target ones are tolerated.
 _BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
 _AXES = 6
+# The offset approaches its reach with this time constant, so that the tool stops there without passing it.
+_APPROACH_S = 0.02
 
 
 class AdmittanceLoop:
@@ -54,10 +56,11 @@ class AdmittanceLoop:
         push = step_s * (law.active[axis] * error - stiffness * offset)
         rate = (mass * self._rate[axis] + push) / (mass + step_s * (damping + step_s * stiffness))
         whole = self.total[axis]
-        step = min(
-            max(offset + rate * step_s + feed_forward - whole, -self._speed[axis] * step_s), self._speed[axis] * step_s
-        )
-        moved = min(max(whole + step, -self._reach[axis]), self._reach[axis]) - feed_forward
+        reach, speed = self._reach[axis], self._speed[axis]
+        farthest = min(speed, max(0.0, reach - whole) / _APPROACH_S) * step_s
+        nearest = -min(speed, max(0.0, reach + whole) / _APPROACH_S) * step_s
+        step = min(max(offset + rate * step_s + feed_forward - whole, nearest), farthest)
+        moved = min(max(whole + step, -reach), reach) - feed_forward
         self._offset[axis], self._rate[axis] = moved, (moved - offset) / step_s
 
     def _add_up(self, feed_forward: Array) -> None:

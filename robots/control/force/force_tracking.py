@@ -43,6 +43,9 @@ class ForceTracking:
         joints: Joint names, for messages.
     """
 
+    name = "force tracking"
+    """For messages."""
+
     contact = False
     """Contact does not end this motion."""
     goal: Array | None = None
@@ -54,7 +57,11 @@ class ForceTracking:
         self._task = task
         self._joints = joints
         self._limits = limits
-        self._playback = TrajectoryPlayback(task.trajectory, acceleration_rad_s2=np.array(limits.acceleration_rad_s2))
+        self._playback = TrajectoryPlayback(
+            task.trajectory,
+            acceleration_rad_s2=np.array(limits.acceleration_rad_s2),
+            jerk_rad_s3=np.array(limits.jerk_rad_s3),
+        )
         self._admittance = AdmittanceLoop(task.admittance)
         self._tracker = ToolTracker(limits=limits, start=self._playback.position)
         self._recorder = ForceRecorder(task.record_s)
@@ -73,7 +80,7 @@ class ForceTracking:
     @property
     def stopped(self) -> bool:
         """True when path and offset stand still or have ended."""
-        return self._playback.stopped and float(np.abs(self.velocity).max()) < _STANDS_RAD_S
+        return self._playback.stopped and self._tracker.at_rest
 
     @property
     def moving(self) -> bool:
@@ -160,7 +167,14 @@ class ForceTracking:
         path = state.kinematics.tool_pose(nominal)
         total = self._admittance.total.reshape(2, 3) @ self._task_axes.T
         target = RigidTransform(xyz=path.xyz + total[0], xyzw=product(quaternion_of(total[1]), path.xyzw))
-        tracker.step(step_s, target=target, nominal=nominal, kinematics=state.kinematics, returning=self._playback.pace)
+        tracker.step(
+            step_s,
+            target=target,
+            nominal=nominal,
+            kinematics=state.kinematics,
+            returning=self._playback.pace,
+            least_rad_s=_STANDS_RAD_S if self._playback.stopped else 0.0,
+        )
         if self._missing() > _MOST_MISSING:
             self._failure = self._reason()
 

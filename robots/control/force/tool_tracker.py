@@ -6,15 +6,18 @@ import numpy as np
 
 from robots.control.arm_state import ToolKinematics
 from robots.control.force.cholesky import solve_positive_definite
+from robots.control.generators.online_trajectory import OnlineTrajectoryGenerator
 from robots.model.inverse_kinematics import pose_error
 from robots.model.robot_model import JointLimits
 from robots.model.transform import RigidTransform
 from robots.port import Array
 
 _DAMPING = 1e-7
-_ACCELERATION_SHARE = 0.95
-_VELOCITY_SHARE = 0.98
-_STOP_SHARE = 0.8
+_ACCELERATION_SHARE = 0.9
+# Joints at rest start again at this multiple of the speed below which they come to rest.
+_LEAVES = 3.0
+# Speed at which an error of position is corrected, per radian.
+_CORRECTION_HZ = 60.0
 # The self-motion of a redundant arm returns to the nominal joints at this rate.
 _RETURN_HZ = 1.0
 _FULL_POSE = 6
@@ -23,32 +26,40 @@ _FULL_POSE = 6
 class ToolTracker:
     """`position`, `velocity`, `acceleration` (n,) are the joints, reused; `missing_m`, `missing_rad` the pose error.
 
-    Each period makes one damped Newton step from the last solution. Arms of fewer than six
-    joints track the tool's position only.
+    Each period makes one damped Newton step from the last solution, and the joints follow it within their limits of
+    position, speed, acceleration and jerk. Arms of fewer than six joints track the tool's position only.
     """
 
     def __init__(self, *, limits: JointLimits, start: Array) -> None:
-        self._lower = np.minimum(limits.lower_rad, start)
-        self._upper = np.maximum(limits.upper_rad, start)
-        self._fastest = np.array(limits.velocity_rad_s) * _VELOCITY_SHARE
-        self._acceleration = np.array(limits.acceleration_rad_s2) * _ACCELERATION_SHARE
+        self._shaper = OnlineTrajectoryGenerator(limits=limits, start=start, share=_ACCELERATION_SHARE)
         self._rows = _FULL_POSE if len(start) >= _FULL_POSE else 3
         self._damping = _DAMPING * np.eye(self._rows)
         self._nominal = np.array(start, dtype=np.float64)
-        self.position = self._nominal.copy()
-        self.velocity = np.zeros(len(start))
-        self.acceleration = np.zeros(len(start))
+        self.position = self._shaper.position
+        self.velocity = self._shaper.velocity
+        self.acceleration = self._shaper.acceleration
+        # Where the joints should be, how fast, and how that changes.
+        self._target = self._nominal.copy()
+        self._rate = np.zeros(len(start))
         self.missing_m = 0.0
         self.missing_rad = 0.0
         self.hindered = 0
         """The joint whose speed fell shortest of what the pose requires."""
 
     def step(
-        self, step_s: float, *, target: RigidTransform, nominal: Array, kinematics: ToolKinematics, returning: float
+        self,
+        step_s: float,
+        *,
+        target: RigidTransform,
+        nominal: Array,
+        kinematics: ToolKinematics,
+        returning: float,
+        least_rad_s: float,
     ) -> None:
         """Advance to `target` (world); `nominal` are the joints of the path without deviation.
 
-        `returning` (0 to 1) scales how fast a redundant arm returns to the nominal joints.
+        `returning` (0 to 1) scales how fast a redundant arm returns to the nominal joints. Where no joint needs more
+        than `least_rad_s`, they come to rest exactly.
         """
         guess = self.position + (nominal - self._nominal)
         self._nominal[:] = nominal
@@ -58,11 +69,18 @@ class ToolTracker:
             pull = (_RETURN_HZ * step_s * returning) * (nominal - guess)
             guess = guess + pull
             error = error - jacobian[: self._rows] @ pull
-        self._go(step_s, (guess + self._newton(jacobian[: self._rows], error) - self.position) / step_s)
+        self._go(step_s, guess + self._newton(jacobian[: self._rows], error), least_rad_s)
+
+    @property
+    def at_rest(self) -> bool:
+        """True when the joints stand still."""
+        return self._shaper.at_rest
 
     def brake(self, step_s: float) -> None:
         """Come to rest."""
-        self._go(step_s, np.zeros_like(self.velocity))
+        self._shaper.brake(step_s)
+        self._target[:] = self.position
+        self._rate[:] = self.velocity
 
     def _error(self, pose: RigidTransform, target: RigidTransform) -> Array:
         error = pose_error(pose, target)[: self._rows]
@@ -74,18 +92,20 @@ class ToolTracker:
     def _newton(self, jacobian: Array, error: Array) -> Array:
         return jacobian.T @ solve_positive_definite(jacobian @ jacobian.T + self._damping, error)
 
-    def _go(self, step_s: float, requested: Array) -> None:
-        change = self._acceleration * step_s
-        highest = np.minimum(np.minimum(self.velocity + change, self._fastest), self._stoppable(step_s, self._upper))
-        lowest = np.maximum(np.maximum(self.velocity - change, -self._fastest), -self._stoppable(step_s, self._lower))
-        velocity = np.minimum(np.maximum(requested, lowest), highest)
-        self.hindered = int(np.argmax(np.abs(requested - velocity)))
-        self.acceleration[:] = (velocity - self.velocity) / step_s
-        self.velocity[:] = velocity
-        self.position += velocity * step_s
+    def _go(self, step_s: float, target: Array, least_rad_s: float) -> None:
+        rate = (target - self._target) / step_s
+        rise = (rate - self._rate) / step_s
+        self._target, self._rate = target, rate
+        if self._rests(least_rad_s):
+            self._shaper.brake(step_s)
+            return
+        self._shaper.track(step_s, position=target, velocity=rate, acceleration=rise, pace=1.0)
+        self.hindered = int(np.argmax(np.abs(target - self.position)))
 
-    def _stoppable(self, step_s: float, limit: Array) -> Array:
-        """Return the maximum velocities of this period from which the joints can stop at a limit."""
-        hardest = _STOP_SHARE * self._acceleration
-        room = np.abs(limit - self.position)
-        return hardest * (np.sqrt(step_s * step_s + 2.0 * room / hardest) - step_s)
+    def _rests(self, least_rad_s: float) -> bool:
+        if least_rad_s == 0.0:
+            return False
+        needed = float((np.abs(self._rate) + _CORRECTION_HZ * np.abs(self._target - self.position)).max())
+        if self.at_rest:
+            return needed < _LEAVES * least_rad_s
+        return max(needed, float(np.abs(self.velocity).max())) < least_rad_s

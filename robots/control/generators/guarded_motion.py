@@ -30,6 +30,9 @@ class GuardedMotion:
         contact: The contact that ends it.
     """
 
+    name = "guarded motion"
+    """For messages."""
+
     def __init__(self, inner: MotionGenerator, contact: ContactCondition) -> None:
         self._inner = inner
         self._force_n = contact.force_n

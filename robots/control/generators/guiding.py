@@ -21,17 +21,21 @@ class GuidingGenerator(SetpointStream):
 
     Args:
         limits: Joint limits.
-        start: The measured joints, (n,), rad.
+        start: The arm's set point, at rest, (n,), rad; held before it has followed the arm, it stays there.
+        measured: The measured joints, (n,), rad.
         margin_rad: Distance from a limit at which the arm is pushed back.
     """
 
-    def __init__(self, *, limits: JointLimits, start: Array, margin_rad: float = 0.03) -> None:
+    name = "guiding"
+    """For messages."""
+
+    def __init__(self, *, limits: JointLimits, start: Array, measured: Array, margin_rad: float = 0.03) -> None:
         super().__init__(
             shaper=OnlineTrajectoryGenerator(limits=limits, start=start), values=0, watchdog_s=float("inf")
         )
         self._silence_s = 0.0
-        self._lower = np.minimum(np.array(limits.lower_rad) + margin_rad, start)
-        self._upper = np.maximum(np.array(limits.upper_rad) - margin_rad, start)
+        self._lower = np.minimum(np.array(limits.lower_rad) + margin_rad, measured)
+        self._upper = np.maximum(np.array(limits.upper_rad) - margin_rad, measured)
         self._floating = True
 
     @property

@@ -22,6 +22,9 @@ class JointJogGenerator(SetpointStream):
         watchdog_s: Maximum silence before the set point comes to rest.
     """
 
+    name = "joint jog"
+    """For messages."""
+
     def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:
         shaper = OnlineTrajectoryGenerator(limits=limits, start=start, share=_GOING_SHARE)
         super().__init__(shaper=shaper, values=len(start), watchdog_s=watchdog_s)

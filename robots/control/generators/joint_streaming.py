@@ -34,6 +34,9 @@ class JointStreamGenerator(SetpointStream):
         watchdog_s: Maximum silence before the set point comes to rest.
     """
 
+    name = "joint stream"
+    """For messages."""
+
     def __init__(self, *, limits: JointLimits, joints: tuple[str, ...], start: Array, watchdog_s: float) -> None:
         super().__init__(
             shaper=OnlineTrajectoryGenerator(limits=limits, start=start), values=len(start), watchdog_s=watchdog_s

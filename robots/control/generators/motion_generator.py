@@ -21,6 +21,11 @@ class MotionGenerator(Protocol):
     acceleration: Array
 
     @property
+    def name(self) -> str:
+        """What it is, for messages."""
+        ...
+
+    @property
     def stopped(self) -> bool:
         """True when the set point stands still: held, or at the end."""
         ...

@@ -73,12 +73,16 @@ class OnlineTrajectoryGenerator:
         """True when the set point stands still."""
         return not (self.velocity.any() or any(self._now[2]))
 
-    def place(self, position: Array, velocity: Array) -> None:
-        """Continue from this externally produced state; positions beyond a limit are moved inside."""
+    def place(self, position: Array, velocity: Array, acceleration: Array | None = None) -> None:
+        """Continue from this externally produced state, at rest in acceleration if none is given.
+
+        Positions beyond a limit are moved inside.
+        """
         self.position[:] = np.minimum(np.maximum(position, self.lower_rad), self.upper_rad)
         self.velocity[:] = np.minimum(np.maximum(velocity, -self.velocity_rad_s), self.velocity_rad_s)
-        self.acceleration[:] = 0.0
-        self._now = (self.position.tolist(), self.velocity.tolist(), [0.0] * len(position))
+        self.acceleration[:] = 0.0 if acceleration is None else acceleration
+        np.minimum(np.maximum(self.acceleration, -self._hardest), self._hardest, out=self.acceleration)
+        self._now = (self.position.tolist(), self.velocity.tolist(), self.acceleration.tolist())
         self._stop_start, self._stop_passed_s = self._now[0], 0.0
         self._plan_stop(self._now, self._stop)
 

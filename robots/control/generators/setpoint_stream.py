@@ -22,6 +22,9 @@ class SetpointStream:
         watchdog_s: Maximum silence.
     """
 
+    name = "stream"
+    """For messages."""
+
     contact = False
     """It ends on `finish`."""
     goal: Array | None = None

@@ -34,6 +34,9 @@ class ToolJogGenerator(SetpointStream):
         watchdog_s: Maximum silence before the set point comes to rest.
     """
 
+    name = "tool jog"
+    """For messages."""
+
     def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:
         shaper = OnlineTrajectoryGenerator(limits=limits, start=start, share=_GOING_SHARE)
         super().__init__(shaper=shaper, values=6, watchdog_s=watchdog_s)

@@ -11,9 +11,13 @@ from robots.port import Array, JointTrajectory
 SHORTEST_STOP_S = 0.1
 """Minimum time of a start or stop, so that slow motions do not stop abruptly."""
 
-# Stopping uses this share of the joints' acceleration; the rest is reserved for tracking.
+# Stopping uses this share of the joints' acceleration and jerk; the rest is reserved for tracking.
 _ACCELERATION_SHARE = 0.9
-_SLOW = 1e-9
+_JERK_SHARE = 0.85
+# A set point that moves by this within a period exceeds no limit.
+_SAME_RAD = 1e-7
+# While a path that begins with a push p″ gathers pace, its jerk reaches 3 p″s̈.
+_FIRST_PACE = 3.0
 
 
 class TrajectoryPlayback:
@@ -24,8 +28,12 @@ class TrajectoryPlayback:
     Args:
         trajectory: The path over time, from rest to rest.
         acceleration_rad_s2: Acceleration limits of the joints, (n,).
+        jerk_rad_s3: Jerk limits of the joints, (n,).
         shortest_stop_s: Minimum time from the nominal pace to a stop; it makes slow stops gentle.
     """
+
+    name = "trajectory"
+    """For messages."""
 
     contact = False
     """It ends only at its goal."""
@@ -35,7 +43,12 @@ class TrajectoryPlayback:
     """A path can always be followed."""
 
     def __init__(
-        self, trajectory: JointTrajectory, *, acceleration_rad_s2: Array, shortest_stop_s: float = SHORTEST_STOP_S
+        self,
+        trajectory: JointTrajectory,
+        *,
+        acceleration_rad_s2: Array,
+        jerk_rad_s3: Array,
+        shortest_stop_s: float = SHORTEST_STOP_S,
     ) -> None:
         self._shortest_stop_s = shortest_stop_s
         from robots.control import kernels
@@ -43,12 +56,19 @@ class TrajectoryPlayback:
         # Copied: in virtual time these are the arrays of the planner, which may reuse them.
         self._points = np.array(trajectory.position_rad, dtype=np.float64, order="C")
         self._slopes = np.array(trajectory.velocity_rad_s, dtype=np.float64, order="C")
+        self._peak = np.abs(self._slopes).max(axis=0)
         self._pass_along = kernels.interpolate_setpoint
+        self._advance_pace = kernels.advance_pace
         self._dt_s = trajectory.dt_s
         self._acceleration = acceleration_rad_s2 * _ACCELERATION_SHARE
+        self._jerk = jerk_rad_s3 * _JERK_SHARE
+        # Time in which the jerk limits allow the acceleration at the start of the path.
+        self._first_jerk_s = float((self._first_acceleration() / self._jerk).max())
         self.duration_s = trajectory.duration_s
         self.passed_s = 0.0
         self.pace = 1.0
+        self._rate = 0.0
+        self._pace = np.zeros(3)
         self.position = self._points[0].copy()
         self.velocity = np.zeros_like(self.position)
         self.acceleration = np.zeros_like(self.position)
@@ -90,34 +110,32 @@ class TrajectoryPlayback:
     def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
         """Advance by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
         if self.passed_s == 0.0:
-            # It starts at rest, where any pace is possible.
-            self.pace = target_pace
-        change = 0.0
-        if self.pace != target_pace:
-            change = self._pace_change(*self._derivatives(), target_pace)
-            reached = self.pace + change * step_s
-            if (reached - target_pace) * (self.pace - target_pace) <= 0.0:
-                reached = target_pace
-            change = (reached - self.pace) / step_s
-            middle, self.pace = (self.pace + reached) / 2.0, reached
-            self.passed_s = min(self.passed_s + middle * step_s, self.duration_s)
-        else:
+            # It starts at rest, where any pace is possible, unless the path begins with a push.
+            self.pace, self._rate = (0.0 if self._first_jerk_s > step_s else target_pace), 0.0
+        if self.pace == target_pace and self._rate == 0.0:
             self.passed_s = min(self.passed_s + self.pace * step_s, self.duration_s)
-        self._set_point(change)
+        else:
+            self._change_pace(step_s, target_pace)
+        self._set_point()
 
-    def _pace_change(self, slope: Array, curvature: Array, target: float) -> float:
-        """Return s̈ towards the target so that no joint's p″ṡ² + p′s̈ exceeds its acceleration."""
-        fastest = 1.0 / self._shortest_stop_s
-        moving = np.abs(slope) > _SLOW
-        if not moving.any():
-            return fastest if target > self.pace else -fastest
-        direction = np.sign(slope[moving])
-        along = curvature[moving] * direction * self.pace**2
-        room = self._acceleration[moving]
-        speed = np.abs(slope[moving])
-        if target > self.pace:
-            return max(0.0, min(fastest, float(np.min((room - along) / speed))))
-        return min(0.0, max(-fastest, float(np.max((-room - along) / speed))))
+    def _change_pace(self, step_s: float, target: float) -> None:
+        pace = self._pace
+        pace[0], pace[1] = self.pace, self._rate
+        self._advance_pace(
+            self._points,
+            self._slopes,
+            *self.located(),
+            self._dt_s,
+            step_s,
+            target,
+            1.0 / max(self._shortest_stop_s, _FIRST_PACE * self._first_jerk_s),
+            self._acceleration,
+            self._jerk,
+            self._peak,
+            pace,
+        )
+        self.pace, self._rate = float(pace[0]), float(pace[1])
+        self.passed_s = min(self.passed_s + float(pace[2]), self.duration_s)
 
     def located(self) -> tuple[int, float]:
         """Return the sample before the set point, and the interpolation share to the next one, 0 to 1."""
@@ -125,19 +143,12 @@ class TrajectoryPlayback:
         index = min(int(self.passed_s / self._dt_s), last)
         return index, self.passed_s / self._dt_s - index
 
-    def _derivatives(self) -> tuple[Array, Array]:
-        """Return p′ and p″ with respect to the trajectory's own time."""
-        if self.at_end:
-            return np.zeros_like(self.position), np.zeros_like(self.position)
-        index, u = self.located()
-        h = self._dt_s
-        p0, p1, v0, v1 = self._points[index], self._points[index + 1], self._slopes[index], self._slopes[index + 1]
-        rise = (p1 - p0) / h
-        slope = (6 * u - 6 * u * u) * rise + (1 - 4 * u + 3 * u * u) * v0 + (3 * u * u - 2 * u) * v1
-        curvature = ((6 - 12 * u) * rise + (6 * u - 4) * v0 + (6 * u - 2) * v1) / h
-        return slope, curvature
+    def _first_acceleration(self) -> Array:
+        first, second = self._slopes[0], self._slopes[1]
+        rise = (self._points[1] - self._points[0]) / self._dt_s
+        return np.abs(6.0 * rise - 4.0 * first - 2.0 * second) / self._dt_s
 
-    def _set_point(self, pace_change: float) -> None:
+    def _set_point(self) -> None:
         if self.at_end:
             self.position[:] = self._points[-1]
             self.velocity[:] = 0.0
@@ -152,7 +163,7 @@ class TrajectoryPlayback:
             self._dt_s,
             self.pace,
             self.pace**2,
-            pace_change,
+            self._rate,
             self.position,
             self.velocity,
             self.acceleration,
@@ -175,9 +186,9 @@ def validate_trajectory(trajectory: JointTrajectory, *, start_rad: Array, joints
         raise RobotError("the trajectory has values that are not finite, or dt_s is not positive")
     gap = np.abs(position[0] - start_rad)
     worst = int(np.argmax(gap))
-    if gap[worst] > 0.01:
+    if gap[worst] > _SAME_RAD:
         raise RobotError(
-            f"the trajectory starts {gap[worst]:.3f} rad from the set point of {joints[worst]}",
+            f"the trajectory starts {gap[worst]:.3g} rad from the set point of {joints[worst]}",
             hint="plan from ArmSample.desired_rad",
         )
     if np.abs(velocity[[0, -1]]).max() > 0.01:

@@ -40,7 +40,8 @@ def validate_path(
             reason = "goal_outside_limits" if number else "start_outside_limits"
             message = f"waypoint {number} of the given path: {outside}"
             return PlanRefusal(reason=reason, message=message, hint="plan another path")
-    path = np.vstack(rows)
+    # Exactly: the set point moves from where it is.
+    path = np.vstack((start, *rows[1:]))
     hit = checker.first_collision(path, query=EscapeChecker(checker, start))
     if hit is not None:
         at_start = hit.segment == 0 and hit.share == 0.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.model.robot_model import JointLimits
-from robots.motion.joint_profile import ACCELERATION_SHARE
+from robots.motion.joint_profile import ACCELERATION_SHARE, JERK_SHARE
 from robots.planning.timing.blending import MIDDLE_SHARE, BlendedPath, blend_corners, remove_duplicates
 from robots.planning.timing.time_parameterization import JointRateLimits, TimeParameterization, time_optimal
 from robots.port import Array, JointTrajectory
@@ -76,7 +76,7 @@ def rate_limits(limits: JointLimits, speed: float) -> JointRateLimits:
     return JointRateLimits(
         velocity=np.array(limits.velocity_rad_s) * (speed * _SHARE),
         acceleration=np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE),
-        jerk=np.array(limits.jerk_rad_s3) * _SHARE,
+        jerk=np.array(limits.jerk_rad_s3) * JERK_SHARE,
     )
 
 

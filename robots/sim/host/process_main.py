@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import logging
 import os
 import signal
 import socket
@@ -178,6 +179,8 @@ def main() -> None:
     connection_fd, state_fd, timing_fd, heartbeat_fd, *stop_fd = (int(argument) for argument in sys.argv[1:])
     # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The parent reports the jumps of set points: writing could block this loop.
+    logging.getLogger("flexcell.set_points").disabled = True
     connection = socket.socket(fileno=connection_fd)
     channel = MessageSocket[ToWorld, FromWorld](connection, ToWorld)
     try:

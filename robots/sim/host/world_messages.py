@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed, ReflexTripped
+from robots.control.motion_event import AnyMotionEvent
 from robots.io.request_failure import RequestFailure
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.arm_commands import SimCommand
@@ -30,4 +30,4 @@ class WorldRestored(msgspec.Struct, frozen=True, kw_only=True, tag="restored"):
 
 
 ToWorld = BuildWorld | AnyCommand
-FromWorld = WorldReady | WorldRestored | RequestFailure | MotionFinished | MotionHeld | MotionResumed | ReflexTripped
+FromWorld = WorldReady | WorldRestored | RequestFailure | AnyMotionEvent

@@ -54,6 +54,7 @@ class SimArmLoop:
         self.indices = indices
         self._physics = physics
         self._acceleration_rad_s2 = np.array(model.limits.acceleration_rad_s2)
+        self._jerk_rad_s3 = np.array(model.limits.jerk_rad_s3)
         self._tool_link = physics.body_number(f"{indices.name}/{model.tool_link}")
         self._beyond_flange = physics.members(physics.body_number(f"{indices.name}/{model.flange_link}"))
         self._tool_xyz: Array = np.zeros(3)
@@ -94,10 +95,12 @@ class SimArmLoop:
                 control.start(command.motion, self._listener(command), Tolerance())
             case StartGuiding():
                 control.float_with(damping_share=command.damping)
-                start = self._physics.positions[self.indices.qpos]
-                control.start(
-                    command.motion, GuidingGenerator(limits=self.indices.model.limits, start=start), Tolerance()
+                guiding = GuidingGenerator(
+                    limits=self.indices.model.limits,
+                    start=control.motion.position,
+                    measured=self._physics.positions[self.indices.qpos],
                 )
+                control.start(command.motion, guiding, Tolerance())
             case Setpoint():
                 control.motion.receive(command.motion, np.array(command.values), age_s=command.age_s)
             case FinishStream():
@@ -133,10 +136,12 @@ class SimArmLoop:
         self.control.initialize(near, reflex=reflex)
 
     def _passage(self, command: FollowTrajectory) -> MotionGenerator:
-        trajectory, limits = command.trajectory, self._acceleration_rad_s2
+        trajectory, limits, jerk = command.trajectory, self._acceleration_rad_s2, self._jerk_rad_s3
         if command.until is None:
-            return TrajectoryPlayback(trajectory, acceleration_rad_s2=limits)
-        inner = TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, shortest_stop_s=GUARDED_STOP_S)
+            return TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk)
+        inner = TrajectoryPlayback(
+            trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk, shortest_stop_s=GUARDED_STOP_S
+        )
         return GuardedMotion(inner, command.until)
 
     def _listener(self, command: StartStream) -> MotionGenerator:

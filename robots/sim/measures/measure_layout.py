@@ -16,6 +16,7 @@ _CELL = (
     Measure(name="contact_force_max_n", unit="N", reduction="largest"),
 )
 _CLEARANCE = Measure(name="clearance_min_m", unit="m", reduction="least")
+_JUMPS = Measure(name="set_point_jumps", unit="", reduction="sum")
 _TOOL = (
     Measure(name="force_max_n", unit="N", reduction="largest"),
     Measure(name="force_min_n", unit="N", reduction="least"),
@@ -38,10 +39,12 @@ class MeasureLayout:
         self.cell_clearance = _add(measures, "cell", (_CLEARANCE,)).start
         self.arms: dict[str, slice] = {}
         self.clearances: dict[str, int] = {}
+        self.jumps: dict[str, int] = {}
         self.tools: dict[str, slice] = {}
         for arm, kind in tools.items():
             self.arms[arm] = _add(measures, arm, ARM_MEASURES)
             self.clearances[arm] = _add(measures, arm, (_CLEARANCE,)).start
+            self.jumps[arm] = _add(measures, arm, (_JUMPS,)).start
             if kind is not None:
                 self.tools[arm] = _add(measures, f"{arm}.{kind}", _TOOL)
         self.measures = tuple(measures)

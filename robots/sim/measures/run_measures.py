@@ -80,6 +80,7 @@ class RunMeasures:
             )
             for name, arm in arms.items()
         ]
+        self._watches = [(layout.jumps[name], arm.control.watch) for name, arm in arms.items()]
         self._wrenches = [(arm.wrenches, arm.wrench) for arm in self._arms]
         self._tools = {
             name: ToolMeasures(
@@ -150,6 +151,8 @@ class RunMeasures:
         self._row = 0
         for arm in self._arms:
             arm.restart()
+        for _, watch in self._watches:
+            watch.count = 0
         for tool in self._tools.values():
             tool.let_go()
         self._contacts.restart(step)
@@ -166,6 +169,8 @@ class RunMeasures:
     def _reduce(self) -> None:
         for arm in self._arms:
             arm.reduce(self._row)
+        for place, watch in self._watches:
+            self._values[place] = watch.count
         self._row = 0
 
 

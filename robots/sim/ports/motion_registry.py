@@ -6,7 +6,14 @@ import asyncio
 from collections.abc import Callable
 
 from engine.errors import CONNECT_AGAIN, RobotError
-from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped
+from robots.control.motion_event import (
+    AnyMotionEvent,
+    MotionFinished,
+    MotionHeld,
+    MotionResumed,
+    ReflexTripped,
+    SetPointJumped,
+)
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands.world_commands import AnyCommand, CancelMotion, HoldMotion, ResumeMotion
 
@@ -74,8 +81,8 @@ class SimMotion:
                 # Of a hold and a resume in quick succession only the last is reported; it answers both. Later
                 # requests are not answered by it: they are still in transit to the world.
                 self._answer(event.request)
-            case ReflexTripped():
-                # Its end follows, with the reason.
+            case ReflexTripped() | SetPointJumped():
+                # If it ends the motion, its end follows, with the reason.
                 pass
             case MotionFinished():
                 self._last_progress = event.progress

@@ -27,7 +27,10 @@ def trajectory(duration_s: float = 1.0) -> JointTrajectory:
 
 def new_guarded(contact: ContactCondition, *, duration_s: float = 1.0) -> GuardedMotion:
     playback = TrajectoryPlayback(
-        trajectory(duration_s), acceleration_rad_s2=np.full(2, 15.0), shortest_stop_s=GUARDED_STOP_S
+        trajectory(duration_s),
+        acceleration_rad_s2=np.full(2, 15.0),
+        jerk_rad_s3=np.full(2, 7500.0),
+        shortest_stop_s=GUARDED_STOP_S,
     )
     return GuardedMotion(playback, contact)
 

@@ -18,11 +18,11 @@ def lead(
 
 
 def test_it_is_a_stream_generator() -> None:
-    assert isinstance(GuidingGenerator(limits=limits(), start=np.zeros(2)), StreamGenerator)
+    assert isinstance(GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2)), StreamGenerator)
 
 
 def test_the_set_point_is_the_measured_arm_and_does_not_lead() -> None:
-    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2))
+    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2))
     lead(guiding, (0.4, -0.3), (0.2, 0.1))
     assert guiding.position.tolist() == [0.4, -0.3]
     assert guiding.velocity.tolist() == [0.2, 0.1]
@@ -30,14 +30,14 @@ def test_the_set_point_is_the_measured_arm_and_does_not_lead() -> None:
 
 
 def test_near_a_limit_the_set_point_stays_behind() -> None:
-    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), margin_rad=0.03)
+    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2), margin_rad=0.03)
     lead(guiding, (1.99, -2.2), (0.2, -0.1))
     assert guiding.position.tolist() == [1.97, -1.97]
     assert guiding.velocity.tolist() == [0.0, 0.0]
 
 
 def test_held_it_leads_and_brakes_from_how_fast_the_arm_was_led() -> None:
-    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2))
+    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2))
     lead(guiding, (0.4, 0.0), (0.5, 0.0))
     velocities = [0.5]
     while not guiding.stopped:
@@ -52,7 +52,7 @@ def test_held_it_leads_and_brakes_from_how_fast_the_arm_was_led() -> None:
 
 
 def test_finished_it_holds_the_arm_where_it_is_and_is_complete() -> None:
-    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2))
+    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2))
     lead(guiding, (0.4, 0.1), (0.0, 0.0))
     guiding.finish()
     for _ in range(3):
@@ -62,7 +62,7 @@ def test_finished_it_holds_the_arm_where_it_is_and_is_complete() -> None:
 
 
 def test_an_arm_led_into_a_limit_is_held_inside() -> None:
-    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2))
+    guiding = GuidingGenerator(limits=limits(), start=np.zeros(2), measured=np.zeros(2))
     lead(guiding, (1.969, 0.0), (2.0, 0.0))
     for _ in range(400):
         lead(guiding, (1.99, 0.0), (0.0, 0.0), pace=0.0)

@@ -13,6 +13,7 @@ from robots.control.generators.trajectory_playback import TrajectoryPlayback, va
 from robots.port import Array, JointTrajectory
 
 LIMIT = np.array([15.0, 7.5])
+JERK = np.array([7500.0, 3750.0])
 JOINTS = ("shoulder", "elbow")
 
 
@@ -32,7 +33,7 @@ def test_however_it_is_held_and_resumed_it_stays_on_the_path_within_the_accelera
     switches: list[int], reach: float
 ) -> None:
     goal = np.array([1.0, -0.5]) * reach
-    playback = TrajectoryPlayback(smooth(goal, 1.0), acceleration_rad_s2=LIMIT)
+    playback = TrajectoryPlayback(smooth(goal, 1.0), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK)
     velocities, pace = [playback.velocity.copy()], 1.0
     for steps in [*switches, 2000]:
         for _ in range(steps):
@@ -64,7 +65,9 @@ def test_at_any_sequence_of_paces_the_path_is_never_left_nor_the_acceleration_ex
     paces: list[tuple[float, int]], shortest_stop_s: float
 ) -> None:
     trajectory = winding(3.0)
-    playback = TrajectoryPlayback(trajectory, acceleration_rad_s2=LIMIT, shortest_stop_s=shortest_stop_s)
+    playback = TrajectoryPlayback(
+        trajectory, acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK, shortest_stop_s=shortest_stop_s
+    )
     positions, velocities, passed = [playback.position.copy()], [playback.velocity.copy()], [0.0]
     for pace, steps in [*paces, (1.0, 3200)]:
         for _ in range(steps):
@@ -88,7 +91,7 @@ def test_at_any_sequence_of_paces_the_path_is_never_left_nor_the_acceleration_ex
 @settings(deadline=None, max_examples=12)
 @given(st.floats(0.1, 1.0))
 def test_a_speed_override_from_the_start_takes_its_share_of_the_speed_all_the_way(pace: float) -> None:
-    playback = TrajectoryPlayback(smooth(np.array([1.0, -0.5]), 0.5), acceleration_rad_s2=LIMIT)
+    playback = TrajectoryPlayback(smooth(np.array([1.0, -0.5]), 0.5), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK)
     steps, fastest = 0, 0.0
     while not playback.at_end:
         playback.step(0.001, target_pace=pace)
@@ -99,7 +102,7 @@ def test_a_speed_override_from_the_start_takes_its_share_of_the_speed_all_the_wa
 
 
 def test_undisturbed_it_takes_its_own_time_and_ends_at_rest_at_the_goal() -> None:
-    playback = TrajectoryPlayback(smooth(np.array([1.0, -0.5]), 0.5), acceleration_rad_s2=LIMIT)
+    playback = TrajectoryPlayback(smooth(np.array([1.0, -0.5]), 0.5), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK)
     steps = 0
     while not playback.at_end:
         playback.step(0.001, target_pace=1.0)
@@ -111,7 +114,9 @@ def test_undisturbed_it_takes_its_own_time_and_ends_at_rest_at_the_goal() -> Non
 
 
 def test_between_coarse_samples_the_set_point_follows_the_same_curve() -> None:
-    coarse = TrajectoryPlayback(smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.02), acceleration_rad_s2=LIMIT)
+    coarse = TrajectoryPlayback(
+        smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.02), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK
+    )
     fine = smooth(np.array([1.0, 0.0]), 1.0, dt_s=0.001)
     for index in range(1, 1000):
         coarse.step(0.001, target_pace=1.0)
@@ -120,7 +125,7 @@ def test_between_coarse_samples_the_set_point_follows_the_same_curve() -> None:
 
 
 def test_a_stop_takes_at_least_a_tenth_of_a_second_even_when_slow() -> None:
-    playback = TrajectoryPlayback(smooth(np.array([0.01, 0.0]), 2.0), acceleration_rad_s2=LIMIT)
+    playback = TrajectoryPlayback(smooth(np.array([0.01, 0.0]), 2.0), acceleration_rad_s2=LIMIT, jerk_rad_s3=JERK)
     for _ in range(1000):
         playback.step(0.001, target_pace=1.0)
     steps = 0
@@ -136,7 +141,8 @@ def test_a_stop_takes_at_least_a_tenth_of_a_second_even_when_slow() -> None:
         (np.zeros((5, 3)), np.zeros((5, 3)), "not a trajectory for 2 joints"),
         (np.zeros((1, 2)), np.zeros((1, 2)), "not a trajectory"),
         (np.full((5, 2), np.nan), np.zeros((5, 2)), "not finite"),
-        (np.full((5, 2), 0.2), np.zeros((5, 2)), r"0\.200 rad from the set point of shoulder"),
+        (np.full((5, 2), 0.2), np.zeros((5, 2)), r"0\.2 rad from the set point of shoulder"),
+        (np.full((5, 2), 1e-6), np.zeros((5, 2)), r"1e-06 rad from the set point of shoulder"),
         (np.zeros((5, 2)), np.ones((5, 2)), "at rest"),
     ],
 )

@@ -94,7 +94,7 @@ def test_a_straight_line_takes_as_long_as_the_best_profile_for_it(soft: float) -
     start, goal = np.zeros(7), np.array([1.0, -0.5, 0.2, 0.0, 0.8, 0.4, -1.0])
     goal[3], start[3] = -1.0, -0.5
     limits = replace(softer(soft), lower_rad=(-9.0,) * 7, upper_rad=(9.0,) * 7)
-    best = plan_joints(start, goal, speed=1.0, limits=limits, joint_names=PANDA.arm_joints, jerk_limited=True)
+    best = plan_joints(start, goal, speed=1.0, limits=limits, joint_names=PANDA.arm_joints)
     found = time_path(np.array([start, goal]), limits=limits, is_free=lambda _: True)
     best_s = best.dt_s * (len(best.position_rad) - 1)
     assert found.duration_s == pytest.approx(best_s, rel=0.04)

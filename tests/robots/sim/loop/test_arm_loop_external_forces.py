@@ -63,14 +63,14 @@ def test_a_push_at_the_forearm_is_felt_by_the_joints_and_not_by_the_tool(cell: C
 def test_its_own_motion_is_no_external_force(cell: CellModel, settings: ControlSettings) -> None:
     """Weight and inertia of arm and tool are known: on a fast way nothing is felt."""
     arm = SteppedArm(cell, settings)
-    arm.follow(ABOVE_PART, 0.8)
+    arm.follow(ABOVE_PART, 1.0)
     most = 0.0
 
     def look() -> None:
         nonlocal most
         most = max(most, float(np.abs(arm.sample.external_nm).max()), float(np.abs(arm.sample.wrench).max()))
 
-    arm.run(1.0, look=look)
+    arm.run(1.2, look=look)
     assert most < 0.01
 
 

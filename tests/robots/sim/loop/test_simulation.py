@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from robots.port import Tolerance
 from robots.sim.commands.arm_commands import FollowTrajectory
@@ -34,12 +35,12 @@ def test_an_arm_without_commands_does_not_move() -> None:
         assert np.abs(measured(simulation).arm(arm).position_rad - HOME).max() < 1e-9
 
 
+@pytest.mark.jumps
 def test_a_step_of_the_set_point_settles_without_much_overshoot() -> None:
     """A jump of 20 mrad in every joint is answered in 0.3 s, torques within the limits."""
     simulation = Simulation(build_cell(one_arm()))
     goal = HOME + 0.02
-    jump = smooth(HOME, goal, 0.002)
-    simulation.apply(FollowTrajectory(arm="left", motion=1, trajectory=jump, tolerance=Tolerance(path_rad=1.0)))
+    simulation.control("left").motion.initialize(goal)
     peak = np.full(7, -np.inf)
     for _ in range(300):
         simulation.step()

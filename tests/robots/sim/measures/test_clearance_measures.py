@@ -169,7 +169,7 @@ def test_two_arms_share_the_distance_between_them() -> None:
     """It is the clearance of both, and of the cell; without a table and with the limit it is all there is."""
     scene = msgspec.structs.replace(one_arm(), arms=(LEFT, RIGHT), fixtures=())
     arm = SteppedArm(build_cell(scene))
-    arm.follow(np.array([0.0, 0.4, 0.0, -1.9, 0.0, 2.2, 0.8]), 1.0)
+    arm.follow(np.array([0.0, 0.4, 0.0, -1.9, 0.0, 2.2, 0.8]), 1.5)
     arm.until_finished()
     assert clearance(arm) < 0.4
     assert clearance(arm, "right") == clearance(arm) == clearance(arm, "cell")

@@ -46,7 +46,7 @@ async def test_topics_have_what_the_world_sums_up() -> None:
         await asyncio.sleep(0.5)
         expected, found = world.measures(), by_topics.measures()
     # No topic has set points, or distances.
-    unknown = {"left.tracking_error_max_rad", "left.clearance_min_m"}
+    unknown = {"left.tracking_error_max_rad", "left.set_point_jumps", "left.clearance_min_m"}
     assert set(found) == {name for name in expected if name.startswith("left.")} - unknown
     assert found["left.path_m"] == pytest.approx(expected["left.path_m"], rel=0.01)
     assert found["left.joint_path_rad"] == pytest.approx(expected["left.joint_path_rad"], rel=0.01)

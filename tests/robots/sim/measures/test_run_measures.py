@@ -154,8 +154,8 @@ def test_open_fingers_that_push_a_part_are_a_contact(cell: CellModel, reached: A
 def test_measures_begin_again_in_a_restored_world(cell: CellModel, reached: Array) -> None:
     """The jump to the restored state is no path."""
     arm = SteppedArm(cell)
-    arm.follow(ABOVE_PART, 0.3)
-    arm.run(0.2)
+    arm.follow(ABOVE_PART, 1.0)
+    arm.run(0.5)
     assert measures(arm)["left.path_m"] > 0.05
     arm.apply(RestoreWorld(image=reached))
     arm.run(0.1)
@@ -183,7 +183,7 @@ def test_values_do_not_depend_on_when_they_are_read(cell: CellModel) -> None:
     found: list[dict[str, float]] = []
     for reads in (False, True):
         arm = SteppedArm(cell)
-        arm.follow(ABOVE_PART, 0.5)
+        arm.follow(ABOVE_PART, 1.0)
         arm.run(0.333)
         if reads:
             measures(arm)
@@ -210,6 +210,7 @@ def test_what_a_world_has_nothing_of_is_absent() -> None:
                 "tracking_error_max_rad",
                 "force_max_n",
                 "torque_max_nm",
+                "set_point_jumps",
             )
         ),
     }
