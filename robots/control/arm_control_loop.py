@@ -13,6 +13,7 @@ from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
 from robots.control.collision_reflex import CollisionReflex
 from robots.control.generators.motion_generator import MotionGenerator
+from robots.control.kernels import add_feedforward
 from robots.control.laws.cartesian_impedance import CartesianImpedance
 from robots.control.laws.controller import Controller
 from robots.control.laws.gravity_compensation import GravityCompensation
@@ -66,6 +67,7 @@ class ArmControlLoop:
         self._dynamics = dynamics = ArmDynamics(model, base=kinematics.base, gravity_m_s2=gravity_m_s2)
         # Determines the joint damping.
         self._inertia = np.diag(dynamics.mass_matrix(np.array(model.home_rad))).copy()
+        self._feedforward_nm = np.zeros(model.dof)
         self._observer = MomentumObserver(model.dof)
         self._limit_nm = np.array(limits.effort_nm)
         self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
@@ -190,13 +192,14 @@ class ArmControlLoop:
         state, motion, dynamics = self.state, self.motion, self._dynamics
         mass = dynamics.mass_matrix(state.position)
         bias_nm = dynamics.bias(state.position, state.velocity)
-        feedforward_nm = bias_nm + mass @ motion.acceleration
+        feedforward_nm = self._feedforward_nm
+        damping, acceleration = dynamics.damping_nms_rad, motion.acceleration
+        add_feedforward(mass, bias_nm, state.velocity, acceleration, damping, feedforward_nm)
         bearing_nm = feedforward_nm
         if not self._load.none:
-            bearing_nm = feedforward_nm + self._load.bearing_nm(motion.acceleration)
+            bearing_nm = feedforward_nm + self._load.bearing_nm(acceleration)
         torque = law.step(state, motion, feedforward_nm=bearing_nm)
         torque = self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
-        bias_nm += dynamics.damping_nms_rad * state.velocity
         self._observer.command(torque, velocity=state.velocity, mass_matrix=mass, bias_nm=bias_nm)
         return torque
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from robots.control.kernels import observe_momentum
 from robots.port import Array
 
 OBSERVER_GAIN_1_S = 2.0 * math.pi * 60.0
@@ -52,11 +53,11 @@ class MomentumObserver:
         Args:
             torque_nm: The commanded torques τ, (n,).
             velocity: Measured joint velocities, (n,), rad/s.
-            mass_matrix: M of the nominal model at the measured joints, (n, n), kg m².
+            mass_matrix: M of the nominal model at the measured joints, (n, n), kg m²; kept, not copied.
             bias_nm: C q̇ + g of the nominal model there, (n,), with all dampers that it knows.
         """
         self._velocity[:] = velocity
-        self._mass[:] = mass_matrix
+        self._mass = mass_matrix
         np.subtract(torque_nm, bias_nm, out=self._known_nm)
         self._commanded = True
 
@@ -70,10 +71,8 @@ class MomentumObserver:
         """
         if not self._commanded:
             return
-        raw = self._mass @ ((velocity - self._velocity) / step_s)
-        raw -= self._known_nm
         if load_nm is not None:
-            raw -= load_nm
-        raw -= self.external_nm
-        raw *= 1.0 - math.exp(-self._gain_1_s * step_s)
-        self.external_nm += raw
+            self._known_nm += load_nm
+        share = 1.0 - math.exp(-self._gain_1_s * step_s)
+        observe_momentum(self._mass, self._velocity, velocity, self._known_nm, step_s, share, self.external_nm)
+        self._commanded = False
