@@ -5,7 +5,17 @@ An invalid document raises `DocumentError` with file, line and column. Entries a
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.cell import Cell, CellDocument, Fixture, Jitter, MujocoWorld, PartSpec, RobotSpec, load_cell
+from engine.document.cell import (
+    Cell,
+    CellDocument,
+    Fixture,
+    Jitter,
+    MujocoWorld,
+    PartSpec,
+    RealismName,
+    RobotSpec,
+    load_cell,
+)
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -69,6 +79,7 @@ __all__ = [
     "PartSpec",
     "Person",
     "Placement",
+    "RealismName",
     "RetrySpec",
     "RobotSpec",
     "StateSignature",

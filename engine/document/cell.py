@@ -45,15 +45,21 @@ class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", t
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
+RealismName = Literal["ideal", "typical", "poor"]
+
+
 class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
     """The simulated world.
 
     The two timeouts are for simulations in real time on a loaded machine: a longer one lets an arm move for
-    longer without supervision.
+    longer without supervision. `realism` says how far the arms differ from what their controllers know of them.
     """
 
     step_s: Annotated[float, Meta(gt=0.0, le=0.01, description="Physics step in seconds")] = 0.001
     gravity: bool = True
+    realism: Annotated[
+        RealismName, Meta(description="Friction, noise, delay, and errors of masses and calibration of the arms")
+    ] = "ideal"
     engine_silence_s: Annotated[
         float, Meta(ge=0.1, le=60.0, description="Seconds without an engine message after which all motion stops")
     ] = 0.2

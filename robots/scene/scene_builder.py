@@ -20,6 +20,8 @@ Resolve = Callable[[str], Path]
 def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Resolve = Path) -> SimScene:
     """Return the scene of a cell; with a `seed`, parts are displaced by their jitter.
 
+    The errors of the arms are drawn with the seed too, with 0 without one.
+
     Robots with another driver than `sim` are omitted. `resolve` resolves the document's paths
     (`Cell.resolve`).
 
@@ -33,6 +35,8 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
     return SimScene(
         step_s=world.step_s,
         gravity=world.gravity,
+        realism=world.realism,
+        seed=seed if seed is not None else 0,
         engine_silence_s=world.engine_silence_s,
         world_silence_s=world.world_silence_s,
         start_limit_s=world.start_limit_s,
