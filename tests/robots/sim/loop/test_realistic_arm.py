@@ -42,7 +42,7 @@ class Moved:
     end: MotionEnd
 
 
-def moved(arm: SteppedArm, goal: Array = ABOVE_PART, duration_s: float = 0.8) -> Moved:
+def moved(arm: SteppedArm, goal: Array = ABOVE_PART, duration_s: float = 1.0) -> Moved:
     """Let an arm go to a configuration and rest there for half a second."""
     behind: list[Array] = []
     felt: list[Array] = []
@@ -145,7 +145,7 @@ def test_a_moving_joint_feels_its_own_friction_as_an_external_torque(seed: int) 
 def test_no_fast_motion_of_its_own_trips_the_reflex_and_a_push_does(typical: CellModel) -> None:
     """12 N m at the large joints and 4 N m at the small ones; a typical arm feels at most a third of it by itself."""
     arm = SteppedArm(typical, WATCHED)
-    found = moved(arm, duration_s=0.7)
+    found = moved(arm)
     assert found.end is MotionEnd.REACHED
     assert (found.felt_nm < np.array(WATCHED.collision_torque_nm) / 3.0).all()
     assert not any(isinstance(event, ReflexTripped) for event in arm.events)
