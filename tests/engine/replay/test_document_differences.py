@@ -126,7 +126,7 @@ def test_another_label_of_a_parameter_is_no_difference(tmp_path: Path) -> None:
     assert changed(tmp_path, "default: 1}", "default: 1, label: Time}").same
 
 
-def test_a_recording_without_digests_cannot_tell(tmp_path: Path) -> None:
+def test_a_recording_without_digests_is_unverified(tmp_path: Path) -> None:
     """Of a killed process, or of an earlier version."""
     recorded(TEXT, tmp_path / "r.mcap")
     assert load_recording(tmp_path / "r.mcap").altered == {}
