@@ -1,6 +1,6 @@
 """What it costs to know what is not seen: `unknown_space.py [--repeats N]`.
 
-On the shared IRB 4600 cell: one update of the occupancy map, one of the map of observed space and one judgement of
+On the shared IRB 4600 cell: one update of the occupancy map, one of the map of observed space and one assessment of
 camera health with two images, and one query of the unknown space on a trajectory. Run it with `python -P`.
 """
 
@@ -87,7 +87,7 @@ def costs(repeats: int) -> dict[str, float]:
     return {
         "update of the occupancy map": median_ms(lambda: mapper.update(images, moment), repeats),
         "update of the observed space": median_ms(lambda: mapper.observe(images, time_s=0.0), repeats),
-        "judgement of two cameras": median_ms(judge, repeats),
+        "assessment of two cameras": median_ms(judge, repeats),
         "query of the unknown space on a path": median_ms(lambda: planner.swept_space(request), repeats),
     }
 

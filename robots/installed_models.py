@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.cell import RobotModels, RobotSummary, ToolKind
-from engine.cell.camera_coverage import CameraCoverage
+from engine.cell import CameraCoverage, RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.tool_kinds import kind_of_mechanism, tool_kinds

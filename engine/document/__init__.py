@@ -22,6 +22,8 @@ from engine.document.cell_perception import (
     ObjectDetector,
     OccupancyMap,
     Person,
+    UnknownBody,
+    UnknownSpacePolicy,
     arm_reach_m,
 )
 from engine.document.expression.expression import Template, compile_template
@@ -87,6 +89,8 @@ __all__ = [
     "SweepDocument",
     "Template",
     "TimeoutSpec",
+    "UnknownBody",
+    "UnknownSpacePolicy",
     "any_value",
     "arm_reach_m",
     "bind_parameters",

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import CellDocument, Fixture, Person, RobotSpec
-from engine.document.cell_perception import UnknownBody
+from engine.document import CellDocument, Fixture, Person, RobotSpec, UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose

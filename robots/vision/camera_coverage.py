@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.cell.camera_coverage import CameraCoverage, RegionCoverage
+from engine.cell import CameraCoverage, RegionCoverage
 from engine.document import Cell
 from engine.errors import CellError
 from engine.messages import Vector3

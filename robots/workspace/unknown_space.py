@@ -7,8 +7,7 @@ from collections.abc import Iterable
 import msgspec
 import numpy as np
 
-from engine.document import OccupancyMap
-from engine.document.cell_perception import UnknownSpacePolicy
+from engine.document import OccupancyMap, UnknownSpacePolicy
 from engine.messages import Vector3
 from engine.messages.sensing import CameraStatus, ObservedSpace, OccupancyGrid
 from robots.planning.swept_space import CoverRegion, SweptSpace

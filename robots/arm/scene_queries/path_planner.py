@@ -103,7 +103,7 @@ class PathPlanner:
         """Return the path, another one, a slower one, or the refusal of the unknown space on it."""
         check, workspace, options = self._unknown_space, self._workspace, self._options
         policy = workspace.unknown_space.policy
-        looks = check.after_looking if policy == "look_first" else check.on
+        looks = check.once_observed if policy == "look_first" else check.on
         swept = await looks(segment.trajectory)
         if swept is None:
             return segment

@@ -50,7 +50,7 @@ class UnknownSpaceCheck:
         )
         return swept if swept.unknown_m3 > 0.0 else None
 
-    async def after_looking(self, trajectory: JointTrajectory) -> SweptSpace | None:
+    async def once_observed(self, trajectory: JointTrajectory) -> SweptSpace | None:
         """Return what is still unknown after the cameras have had some seconds to see it; raises as `on` does."""
         swept = await self.on(trajectory)
         observed, waited = self._workspace.observed, 0
