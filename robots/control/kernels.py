@@ -18,7 +18,7 @@ _STANDS = 1e-9
 # A pace may change by this share of the jerk limit where the path itself takes all of it.
 _LEAST_JERK_SHARE = 0.05
 _HARDEST_STOP = 1.1
-# The pace that is next_rise is reached where so small a share of the jerk limit is missing.
+# The target pace is reached where so small a share of the jerk limit is missing.
 _SNAP_SHARE = 0.05
 # A pace approaches a faster one with this time constant at least.
 _SPEED_UP_S = 0.02
