@@ -18,7 +18,7 @@ _STANDS = 1e-9
 # A pace may change by this share of the jerk limit where the path itself takes all of it.
 _LEAST_JERK_SHARE = 0.05
 _HARDEST_STOP = 1.1
-# The pace that is wanted is reached where so small a share of the jerk limit is missing.
+# The target pace is reached where so small a share of the jerk limit is missing.
 _SNAP_SHARE = 0.05
 # A pace approaches a faster one with this time constant at least.
 _SPEED_UP_S = 0.02
@@ -137,17 +137,17 @@ def advance_pace(
         fall = max(fall, -max(least, hardest[joint] + bent + min(twist * cube, next_twist * cube)) / size)
         climb = min(climb, max(least, hardest[joint] - bent - max(twist * cube, next_twist * cube)) / size)
         fades = min(fades, _FADING_SHARE * hardest[joint] / max(size, _FADING_SHARE * peak[joint]))
-    wanted = _rise_towards(target - rate, rise, step_s, fades, -lowest, highest)
-    wanted = min(max(wanted, rise + fall * step_s), rise + climb * step_s)
-    wanted = min(max(wanted, floor), ceiling)
-    reached = rate + (rise + wanted) * step_s / 2.0
+    next_rise = _rise_towards(target - rate, rise, step_s, fades, -lowest, highest)
+    next_rise = min(max(next_rise, rise + fall * step_s), rise + climb * step_s)
+    next_rise = min(max(next_rise, floor), ceiling)
+    reached = rate + (rise + next_rise) * step_s / 2.0
     little = _SNAP_SHARE * fades * step_s
-    if abs(reached - target) <= little * step_s and abs(wanted) <= little:
-        reached, wanted = target, 0.0
+    if abs(reached - target) <= little * step_s and abs(next_rise) <= little:
+        reached, next_rise = target, 0.0
     if reached < 0.0:
-        reached, wanted = 0.0, 0.0
-    pace[2] = max(0.0, rate * step_s + (2.0 * rise + wanted) * step_s * step_s / 6.0)
-    pace[0], pace[1] = reached, wanted
+        reached, next_rise = 0.0, 0.0
+    pace[2] = max(0.0, rate * step_s + (2.0 * rise + next_rise) * step_s * step_s / 6.0)
+    pace[0], pace[1] = reached, next_rise
 
 
 @compiled(f"void({_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")

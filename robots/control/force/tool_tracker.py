@@ -96,13 +96,13 @@ class ToolTracker:
         rate = (target - self._target) / step_s
         rise = (rate - self._rate) / step_s
         self._target, self._rate = target, rate
-        if self._rests(least_rad_s):
+        if self._comes_to_rest(least_rad_s):
             self._shaper.brake(step_s)
             return
         self._shaper.track(step_s, position=target, velocity=rate, acceleration=rise, pace=1.0)
         self.hindered = int(np.argmax(np.abs(target - self.position)))
 
-    def _rests(self, least_rad_s: float) -> bool:
+    def _comes_to_rest(self, least_rad_s: float) -> bool:
         if least_rad_s == 0.0:
             return False
         needed = float((np.abs(self._rate) + _CORRECTION_HZ * np.abs(self._target - self.position)).max())
