@@ -42,7 +42,7 @@ SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
 TAGS = "\ntags:"
 FACTORS = "\nfactors:"
-PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:")
+PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:", "unknown_bodies:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
 SHOWN = {
@@ -97,6 +97,7 @@ def test_a_part_of_a_cell_makes_a_world(tmp_path: Path, text: str) -> None:
     assert {arm.name for arm in scene.arms} == set(cell.document.robots)
     assert {part.name for part in scene.parts} == set(cell.document.parts)
     assert {person.name for person in scene.people} == set(cell.document.people)
+    assert {body.name for body in (*scene.unknown_fixtures, *scene.unknown_parts)} == set(cell.document.unknown_bodies)
 
 
 @shown(*STORES)
