@@ -1,10 +1,10 @@
-"""Draws whose hand gets where, when and how fast into the path of an arm that moves, and what is left out."""
+"""Draws whose hand gets where, when and how fast into the path of an arm that moves, and what could avoid a contact."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -29,6 +29,15 @@ CLEAR_M = 0.05
 _SPREAD_M = 0.06
 _TRIES = 5000
 
+Avoidability = Literal["stopping", "slower", "nothing"]
+"""What avoids a contact of an arm that notices the person at once.
+
+`stopping`: braking within the reaction and braking time is enough. `slower`: the arm gets to the person within that
+time, but is not there yet when the person comes into its path, so that a slower one would have come to rest before
+(ISO 13855: the person is within the minimum distance). `nothing`: the person moves to where the arm already is, and
+would touch one at rest.
+"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class UndisturbedMotion:
@@ -49,7 +58,7 @@ class Intrusion:
     """`after_s` the start of the motion the hand of `person` leaves for `hand_m`; with `stay_s` None it stays there.
 
     `near` is the body of the arm whose path the place was drawn at. Nobody reacting, the person would be in the
-    path of the rest of the motion `noticeable_s` after its start.
+    path of the rest of the motion `noticeable_s` after its start. A contact is avoided by `avoidable_by`.
     """
 
     person: str
@@ -59,6 +68,7 @@ class Intrusion:
     stay_s: float | None
     near: str
     noticeable_s: float
+    avoidable_by: Avoidability
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,11 +82,11 @@ class _Reacher:
 
 
 class IntrusionDrawer:
-    """Draws intrusions into recorded paths of one arm of a cell.
+    """Draws intrusions into recorded paths of one arm of a cell, and says of each what could avoid a contact.
 
-    What is left out is what ISO 13855 calls standing within the minimum distance: where the arm would get by
-    itself within `stopping_s`, reaction and braking, of the moment when the person comes into its path. There
-    a contact is nobody's to avoid. Left out are also hands that do not come into the path at all.
+    Args:
+        cell: The cell.
+        stopping_s: Reaction and braking time of the arm.
     """
 
     def __init__(self, cell: CellModel, *, stopping_s: float) -> None:
@@ -91,7 +101,9 @@ class IntrusionDrawer:
         self._rbound: Array = cell.model.geom_rbound
         self._names = cell.body_names
         self.drawn = 0
-        self.too_near = 0
+        """Places drawn that are in reach."""
+        self.beside = 0
+        """Of these, hands that do not get into the path, which are no intrusions."""
 
     def draw(self, motion: UndisturbedMotion, random: np.random.Generator) -> Intrusion:
         """Return an intrusion into a path.
@@ -121,17 +133,10 @@ class IntrusionDrawer:
             return None
         self.drawn += 1
         # The last pose decides most; the whole reach is looked at where it lets that pass.
-        ahead = motion.joints[round(after_s / STEP_S) :]
-        if not self._nearer(who, poses[-1], ahead, than_m=SEEN_M):
-            return None
-        if self._nearer(who, poses[-1], ahead[: round(self._stopping_s / STEP_S) + 1], than_m=CLEAR_M):
-            self.too_near += 1
-            return None
-        noticeable_s = self._noticeable_s(who, motion, poses, after_s)
+        is_in_path = self._nearer(who, poses[-1], motion.joints[round(after_s / STEP_S) :], than_m=SEEN_M)
+        noticeable_s = self._noticeable_s(who, motion, poses, after_s) if is_in_path else None
         if noticeable_s is None:
-            return None
-        if not self._keeps_clear(who, motion, poses, until_s=noticeable_s + self._stopping_s, from_s=after_s):
-            self.too_near += 1
+            self.beside += 1
             return None
         x, y, z = place.tolist()
         return Intrusion(
@@ -142,7 +147,21 @@ class IntrusionDrawer:
             stay_s=stay_s,
             near=self._names[body],
             noticeable_s=noticeable_s,
+            avoidable_by=self._avoidable_by(who, motion, poses, from_s=after_s, noticeable_s=noticeable_s),
         )
+
+    def _avoidable_by(
+        self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], *, from_s: float, noticeable_s: float
+    ) -> Avoidability:
+        rows, first, noticed = motion.joints, round(from_s / STEP_S), round(noticeable_s / STEP_S)
+        last = min(noticed, len(rows) - 1)
+        # Until then nobody could know of the person; an arm that is at rest from then on could not do more.
+        if any(self._nearer(who, pose, rows[[min(first + k, last)]], than_m=CLEAR_M) for k, pose in enumerate(poses)):
+            return "nothing"
+        braking = rows[last : round((noticeable_s + self._stopping_s) / STEP_S) + 1]
+        if any(self._nearer(who, pose, braking, than_m=CLEAR_M) for pose in poses[noticed - first :]):
+            return "slower"
+        return "stopping"
 
     def _noticeable_s(
         self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], after_s: float
@@ -154,12 +173,6 @@ class IntrusionDrawer:
             if self._nearer(who, pose, rest, than_m=SEEN_M):
                 return at_s
         return None
-
-    def _keeps_clear(
-        self, who: _Reacher, motion: UndisturbedMotion, poses: Sequence[LimbPose], *, from_s: float, until_s: float
-    ) -> bool:
-        passed = motion.joints[round(from_s / STEP_S) : round(until_s / STEP_S) + 1]
-        return not any(self._nearer(who, pose, passed, than_m=CLEAR_M) for pose in poses)
 
     def _nearer(self, who: _Reacher, pose: LimbPose, rows: Array, *, than_m: float) -> bool:
         self._data.qpos[who.indices.qpos] = np.hstack((pose.xyz, pose.wxyz)).reshape(-1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +21,9 @@ from engine.skills.motion import JointTrapVel
 from engine.skills.people import ContactCount, CountContacts, Reach, Withdraw
 from engine.skills.planning import Adaptation, FreeMotionFeedback, FreeMotionResult, MotionTarget, MoveFree, PlanOptions
 from robots.port import Array
+from robots.scene.scene_builder import build_scene
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.physics.physics import mujoco
 
 MARGIN_M = 0.03
 WAITS_S = 4.0
@@ -38,8 +41,9 @@ class IntrusionResult:
 
     `end` is `reached`, `waiting` before a hand that stayed, `failed`, or `stuck`: it did not get to its goal within a
     minute of the hand being gone again; `reason` says why it waits or failed. `in_motion` counts the contacts that
-    started while the arm moved, the others started when the person moved into an arm at rest. `stops` of a motion that
-    waits or is stuck are at least as many.
+    started while the arm moved, the others started when the person moved into an arm at rest; `speed_m_s` is the
+    greatest speed at which a body of the arm met the person. `stops` of a motion that waits or is stuck are at least
+    as many.
     """
 
     end: str
@@ -48,6 +52,7 @@ class IntrusionResult:
     contacts: int
     in_motion: int
     greatest_force_n: float
+    speed_m_s: float
     pairs: tuple[tuple[str, str], ...]
     stops: int = 0
     replans: int = 0
@@ -58,9 +63,12 @@ class IntrusionResult:
 class IntrudedCell:
     """An open cell with one arm and people."""
 
-    def __init__(self, cell: OpenCell, *, arm: str, people: tuple[str, ...], speed: float) -> None:
+    def __init__(
+        self, cell: OpenCell, *, arm: str, people: tuple[str, ...], speed: float, body_speeds: BodySpeeds
+    ) -> None:
         self.bus: SkillBus = cell.bus
         self.arm = arm
+        self.body_speeds = body_speeds
         self._people = people
         self._speed = speed
 
@@ -129,7 +137,9 @@ class IntrudedCell:
             duration_s=duration_s,
             contacts=after.contacts - before.contacts,
             in_motion=watch.in_motion,
-            greatest_force_n=watch.greatest_force_n,
+            # A cell in which somebody was touched is not used again: nobody was before.
+            greatest_force_n=after.greatest_force_n if after.contacts > before.contacts else 0.0,
+            speed_m_s=watch.speed_m_s,
             pairs=tuple(pair for pair in after.pairs if pair not in before.pairs),
         )
 
@@ -175,7 +185,7 @@ class IntrudedCell:
 
     def speed_rad_s(self) -> float:
         """Return the speed of the fastest joint."""
-        return max(map(abs, self._state().velocity_rad_s))
+        return _fastest_rad_s(self._state())
 
     async def _count(self) -> ContactCount:
         """Return the counts of all people together."""
@@ -195,31 +205,62 @@ class IntrudedCell:
         assert state is not None
         return state
 
-    async def look(self) -> tuple[float, ContactCount]:
-        """Return the speed of the arm and the count of contacts."""
-        return self.speed_rad_s(), await self._count()
+    async def look(self) -> tuple[JointState, ContactCount]:
+        """Return the state of the arm and the count of contacts."""
+        return self._state(), await self._count()
+
+
+class BodySpeeds:
+    """The speeds of the bodies of the one arm of a cell."""
+
+    def __init__(self, cell: CellModel) -> None:
+        self._model, self._data = cell.model, mujoco.MjData(cell.model)
+        (self._arm,) = cell.arms
+        self._numbers = {cell.body_names[body]: body for body in self._arm.bodies}
+
+    def fastest_m_s(self, state: JointState, bodies: Iterable[str]) -> float:
+        """Return the speed of the fastest of these bodies at its centre of mass; 0 where none is of the arm."""
+        model, data = self._model, self._data
+        data.qpos[self._arm.qpos] = state.position_rad
+        data.qvel[self._arm.dof] = state.velocity_rad_s
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        twist = np.zeros(6)
+        speeds = [0.0]
+        for body in bodies:
+            if body in self._numbers:
+                mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, self._numbers[body], twist, 0)
+                speeds.append(float(np.linalg.norm(twist[3:])))
+        return max(speeds)
 
 
 class _Watch:
-    """Tells contacts of an arm in motion from those of one at rest."""
+    """Distinguishes contacts of an arm in motion from those of one at rest."""
 
     def __init__(self, cell: IntrudedCell, before: ContactCount) -> None:
         self._cell = cell
         self._count = before
         self.in_motion = 0
-        self.greatest_force_n = 0.0
+        self.speed_m_s = 0.0
 
     async def run(self) -> None:
         """Look every 10 ms, until cancelled."""
-        speed = self._cell.speed_rad_s()
+        state, _ = await self._cell.look()
         while True:
             await self._cell.bus.clock.sleep(_LOOK_S)
             # What counts is how fast the arm was before it was touched.
-            before, (speed, count) = speed, await self._cell.look()
-            if count.contacts > self._count.contacts:
-                self.in_motion += (count.contacts - self._count.contacts) * (before > _MOVES_RAD_S)
-                self.greatest_force_n = max(self.greatest_force_n, count.greatest_force_n)
+            before, (state, count) = state, await self._cell.look()
+            started = count.contacts - self._count.contacts
+            if started > 0:
+                self.in_motion += started * (_fastest_rad_s(before) > _MOVES_RAD_S)
+                touched = [other for _, other in count.pairs]
+                self.speed_m_s = max(self.speed_m_s, self._cell.body_speeds.fastest_m_s(before, touched))
             self._count = count
+
+
+def _fastest_rad_s(state: JointState) -> float:
+    return max(map(abs, state.velocity_rad_s))
 
 
 def _so_far(feedback: object, end: str) -> dict[str, Any]:
@@ -259,4 +300,5 @@ async def intruded_cell(document: Cell, *, speed: float) -> AsyncGenerator[Intru
     (arm,), people = document.document.robots, tuple(document.document.people)
     with TemporaryDirectory() as folder:
         async with OpenCell(document, store_path=str(Path(folder) / "store.db")) as cell:
-            yield IntrudedCell(cell, arm=arm, people=people, speed=speed)
+            body_speeds = BodySpeeds(build_cell(build_scene(document.document)))
+            yield IntrudedCell(cell, arm=arm, people=people, speed=speed, body_speeds=body_speeds)

@@ -2,11 +2,11 @@
 
 The arm of one of two people gets into the path of an arm that moves between two places, at a random moment, at or
 near a random place of the path that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s or for ever. Physics runs in virtual
-time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same ways with
+time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same paths with
 the same intrusions and does not look out: it must show contacts, or the others mean nothing.
 
-Left out is where the arm would itself get within its reaction and braking time from when the person comes into its
-path (ISO 13855: within the minimum distance), or has passed by then, and hands that do not get into the path.
+Every drawn hand that gets into the path is executed and counted, by what could avoid a contact (`Avoidability`):
+braking, only having been slower (ISO 13855: the person comes within the minimum distance), or nothing the arm does.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 import numpy as np
 
 from benchmarks.comparison import machine
-from benchmarks.intrusion_drawing import Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_drawing import Avoidability, Intrusion, IntrusionDrawer, UndisturbedMotion
 from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
@@ -124,10 +125,14 @@ def _group(
 def _line(trial: Trial) -> str:
     ended, intrusion = trial.ended, trial.intrusion
     stay = "for ever" if intrusion.stay_s is None else f"{intrusion.stay_s:.1f} s"
+    contacts = (
+        f"{ended.contacts} contacts ({ended.in_motion} in motion, at {ended.speed_m_s:.2f} m/s, "
+        f"{ended.greatest_force_n:.0f} N)"
+    )
     text = (
-        f"{trial.group} {trial.number:3}: {ended.end} after {ended.duration_s:.1f} s, {ended.contacts} contacts "
-        f"({ended.in_motion} in motion), {ended.stops} stops, {ended.replans} replans; hand at "
-        f"{intrusion.after_s:.2f} s to {intrusion.near}, {intrusion.speed_m_s:.2f} m/s, {stay}; {trial.cpu_s:.1f} s CPU"
+        f"{trial.group} {trial.number:3}: {ended.end} after {ended.duration_s:.1f} s, {contacts}, {ended.stops} stops, "
+        f"{ended.replans} replans; hand at {intrusion.after_s:.2f} s to {intrusion.near}, "
+        f"{intrusion.speed_m_s:.2f} m/s, {stay}, avoidable by {intrusion.avoidable_by}; {trial.cpu_s:.1f} s CPU"
     )
     return f"{text}; {ended.reason}" if ended.reason else text
 
@@ -135,23 +140,29 @@ def _line(trial: Trial) -> str:
 def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:
     lines = [
         (
-            "| group | intrusions | with a contact | contacts | of these in motion | greatest force N "
-            "| reached | waiting while blocked | failed | stuck | stops | other paths | waited p50 s |"
+            "| group | avoidable by | intrusions | with a contact | by an arm in motion | at m/s, p50 | at m/s, worst "
+            "| N, worst | reached | waiting while blocked | failed | stuck | stops | other paths | waited p50 s |"
         ),
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+        "|---|---|" + "---:|" * 13,
     ]
     for name, trials in groups:
-        ended = [trial.ended for trial in trials]
-        ends = {end: sum(one.end == end for one in ended) for end in ("reached", "waiting", "failed", "stuck")}
-        waited = float(np.median([one.waited_s for one in ended])) if ended else 0.0
-        lines.append(
-            f"| {name} | {len(ended)} | {sum(one.contacts > 0 for one in ended)} "
-            f"| {sum(one.contacts for one in ended)} | {sum(one.in_motion for one in ended)} "
-            f"| {max((one.greatest_force_n for one in ended), default=0.0):.0f} "
-            f"| {ends['reached']} | {ends['waiting']} | {ends['failed']} | {ends['stuck']} "
-            f"| {sum(one.stops for one in ended)} | {sum(one.replans for one in ended)} | {waited:.2f} |"
-        )
+        for avoidable_by in get_args(Avoidability):
+            ended = [trial.ended for trial in trials if trial.intrusion.avoidable_by == avoidable_by]
+            if ended:
+                lines.append(f"| {name} | {avoidable_by} {_row(ended)}")
     return "\n".join(lines)
+
+
+def _row(ended: Sequence[IntrusionResult]) -> str:
+    ends = {end: sum(one.end == end for one in ended) for end in ("reached", "waiting", "failed", "stuck")}
+    speeds = [one.speed_m_s for one in ended if one.in_motion] or [0.0]
+    waited = float(np.median([one.waited_s for one in ended]))
+    return (
+        f"| {len(ended)} | {sum(one.contacts > 0 for one in ended)} | {sum(one.in_motion > 0 for one in ended)} "
+        f"| {float(np.median(speeds)):.2f} | {max(speeds):.2f} | {max(one.greatest_force_n for one in ended):.0f} "
+        f"| {ends['reached']} | {ends['waiting']} | {ends['failed']} | {ends['stuck']} "
+        f"| {sum(one.stops for one in ended)} | {sum(one.replans for one in ended)} | {waited:.2f} |"
+    )
 
 
 def main() -> None:
@@ -161,6 +172,7 @@ def main() -> None:
     parser.add_argument("--control", type=int, default=20, help="of these, also into motions that do not (default 20)")
     parser.add_argument("--seed", type=int, default=0, help="of the drawing (default 0)")
     parser.add_argument("--only", type=int, nargs="*", help="carry out these numbers of the drawing only")
+    parser.add_argument("--avoidable-by", choices=get_args(Avoidability), help="carry out these of the drawing only")
     parser.add_argument("--speed", type=float, default=0.3, help="share of the joint speed limits (default 0.3)")
     parser.add_argument("--cell", type=Path, default=CELL, help="a cell of one arm with people on one side")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
@@ -170,13 +182,14 @@ def main() -> None:
     drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + motions.stopping_s)
     random = np.random.default_rng(options.seed)
     drawn = [(number, drawer.draw(motions.of(number), random)) for number in range(options.runs)]
+    if options.avoidable_by:
+        drawn = [one for one in drawn if one[1].avoidable_by == options.avoidable_by]
     if options.only:
         drawn = [one for one in drawn if one[0] in options.only]
     print(
         f"{document.name}: there {motions.there.duration_s:.2f} s, back {motions.back.duration_s:.2f} s; "
         f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} "
-        f"places drawn that are in reach, {drawer.too_near} left out as within the minimum distance or passed. "
-        f"{machine()}.\n",
+        f"places drawn that are in reach, {drawer.beside} are beside the path. {machine()}.\n",
         flush=True,
     )
     control = _group(document, motions, drawn[: options.control], group="JointTrapVel", speed=options.speed)

@@ -29,7 +29,7 @@ from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
 from engine.document.cell import load_cell
 from engine.messages import Vector3
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import CameraStatus, ObservedSpace, OccupancyGrid
 from engine.skills.planning import FreeMotionFeedback, MotionTarget, MoveFree, PathPreview, PlanOptions
 from robots.arm.arm_server import ArmServer
 from robots.planning.request import PathCheck, PathCheckRequest, PlanAnswer, PlanRequest
@@ -70,6 +70,8 @@ class Cameras:
     latest: OccupancyGrid | None = None
     stale_reason: str = ""
     starting: bool = False
+    observed: ObservedSpace | None = None
+    camera_statuses: tuple[CameraStatus, ...] = ()
     intruder: np.ndarray | None = None
     notified_s: float = 0.0
     _random: np.random.Generator = field(default_factory=lambda: np.random.default_rng(1))

@@ -1,12 +1,15 @@
 """Makes the pictures in docs/screenshots: serves the demo cells and photographs the page at work, in both themes.
 
-    python docs/make_screenshots.py [NAME …]
+    python docs/make_screenshots.py [--out FOLDER] [NAME …]
 
 `dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone`
 a planned path that waits for its operator, `shared` an arm that waits because a person reaches into its path,
 `editor` a behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches,
-`workcell` the page of the cell, `sweep` what the first runs of a sweep have shown, which are executed before. Needs
-the extras `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
+`workcell` the page of the cell, `sweep` what the first runs of a sweep have shown, which are executed before.
+
+Only where they are named: `operate`, `debug` and `3d` are the layouts of a paused run, each at three sizes. They
+are not kept in the repository; give a folder for them. Needs the extras `all` and `test` and a Chromium. Without a
+graphics card the 3D view takes seconds a picture.
 """
 
 from __future__ import annotations
@@ -29,8 +32,13 @@ from tests.editor_web.browsing import browser_program
 ROOT = Path(__file__).parent.parent
 OUT = ROOT / "docs" / "screenshots"
 LIMIT_MS = 240_000
+RESIZED_MS = 4000
+"""Until the 3D view is drawn in another size without a graphics card; nothing on the page tells when it is."""
 Scheme = Literal["light", "dark"]
-DESKTOP, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)
+Size = tuple[int, int]
+DESKTOP: Size = (1280, 800)
+LARGE: Size = (1920, 1080)
+PHONE: Size = (390, 844)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,10 +49,12 @@ class Picture:
     cell: str | None
     """None where the page is served without one."""
     address: str
-    size: tuple[int, int]
+    size: Size
     prepare: Callable[[Page], None]
     before: Callable[[], None] = lambda: None
     """What is done before it is served."""
+    further: tuple[Size, ...] = ()
+    """Other sizes of the window in which the same moment is photographed."""
 
 
 @contextmanager
@@ -83,6 +93,16 @@ def in_motion(page: Page) -> None:
     expect(page.locator('[data-node="leaf"][data-status="active"]')).to_have_count(2, timeout=LIMIT_MS)
     page.get_by_role("tab", name="Log").click()
     expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=LIMIT_MS)
+
+
+def paused(page: Page) -> None:
+    """Start the transfer in whatever layout the page has, and pause it in mid-motion."""
+    drawn(page)
+    start(page)
+    state = page.get_by_role("status", name="State of the run")
+    expect(state).to_have_text("Running", timeout=LIMIT_MS)
+    page.get_by_role("button", name="Pause", exact=True).click()
+    expect(state).to_contain_text("Paused", timeout=LIMIT_MS)
 
 
 def asked(page: Page) -> None:
@@ -163,9 +183,20 @@ PICTURES = (
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESKTOP, prepare=waiting),
     Picture(name="sweep", cell=None, address=f"/sweeps/{SWEEP}", size=LARGE, prepare=swept, before=sweep_runs),
 )
+LAYOUTS = tuple(
+    Picture(
+        name=name,
+        cell="dual_panda",
+        address=f"{TRANSFER}?layout={name}",
+        size=DESKTOP,
+        prepare=paused,
+        further=(LARGE, PHONE),
+    )
+    for name in ("operate", "debug", "3d")
+)
 
 
-def take(browser: Browser, login: str, picture: Picture, scheme: Scheme) -> None:
+def take(browser: Browser, login: str, picture: Picture, scheme: Scheme, out: Path) -> None:
     """Open the page, logged in, bring it to where it is worth a picture, and take that."""
     width, height = picture.size
     page = browser.new_page(locale="en-US", color_scheme=scheme, viewport={"width": width, "height": height})
@@ -173,18 +204,25 @@ def take(browser: Browser, login: str, picture: Picture, scheme: Scheme) -> None
     page.goto(login)
     page.goto(login.partition("/login")[0] + picture.address)
     picture.prepare(page)
-    OUT.mkdir(parents=True, exist_ok=True)
-    file = OUT / f"{picture.name}-{scheme}.png"
-    page.screenshot(path=file, timeout=LIMIT_MS)
-    print(file.relative_to(ROOT), flush=True)
+    out.mkdir(parents=True, exist_ok=True)
+    for size in (picture.size, *picture.further):
+        if size != picture.size:
+            page.set_viewport_size({"width": size[0], "height": size[1]})
+            page.wait_for_timeout(RESIZED_MS)
+        at = f"-{size[0]}x{size[1]}" if picture.further else ""
+        file = out / f"{picture.name}{at}-{scheme}.png"
+        page.screenshot(path=file, timeout=LIMIT_MS)
+        print(file, flush=True)
     page.close()
 
 
 def main() -> None:
     """Make the pictures that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(each.name for each in PICTURES))
-    chosen = [each for each in PICTURES if each.name in (parser.parse_args().names or [p.name for p in PICTURES])]
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(p.name for p in (*PICTURES, *LAYOUTS)))
+    parser.add_argument("--out", type=Path, default=OUT, help="the folder for the pictures; default docs/screenshots")
+    options = parser.parse_args()
+    chosen = [each for each in (*PICTURES, *LAYOUTS) if each.name in options.names] if options.names else PICTURES
     schemes: tuple[Scheme, ...] = ("light", "dark")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
@@ -193,7 +231,7 @@ def main() -> None:
             for scheme in schemes:
                 # A cell of its own for each: what one leaves behind is not in the next.
                 with served(picture.cell) as login:
-                    take(browser, login, picture, scheme)
+                    take(browser, login, picture, scheme, options.out)
         browser.close()
 
 

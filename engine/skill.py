@@ -137,6 +137,11 @@ def skill_words(address: str) -> str:
     return f"{' '.join([owner, *tools])}: {name.replace('_', ' ')}"
 
 
+def activity_words(activity: str) -> str:
+    """Return what an arm does in words: `line to a pose` for a skill, what is no skill of an arm as it is."""
+    return ARM_SKILL_TITLES.get(activity, activity)
+
+
 def _type_arguments(cls: type[Any]) -> tuple[Any, ...]:
     for ancestor in cls.__mro__:
         for base in getattr(ancestor, "__orig_bases__", ()):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.cell import RobotModels, RobotSummary, ToolKind
+from engine.cell import CameraCoverage, RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.tool_kinds import kind_of_mechanism, tool_kinds
@@ -58,6 +58,12 @@ class InstalledModels:
         from robots.planning.search.reachability import ReachabilityChecker
 
         return ReachabilityChecker(cell)
+
+    def camera_coverage(self, cell: Cell) -> CameraCoverage:
+        """Return how much the cameras of a cell see; raises CellError or DocumentError for an invalid cell."""
+        from robots.vision.camera_coverage import camera_coverage
+
+        return camera_coverage(cell)
 
 
 MODELS: RobotModels = InstalledModels()

@@ -21,6 +21,7 @@ from robots.standard_tools.tool_simulation import tool_server
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.planning_services import PlanningServices
+from robots.workspace.unknown_space import UnknownSpaceRule
 from robots.workspace.workspace import Workspace
 from robots.workspace.world_snapshot import WorldPoseReader
 
@@ -44,6 +45,7 @@ def new_world(
             planners=PlanningServices(bus.clock),
             clock=bus.clock,
             occupancy=cameras if cell.document.occupancy is not None else None,
+            unknown_space=UnknownSpaceRule.of(cell.document.occupancy, cameras=cell.document.cameras),
         )
         arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
         return (*((cameras,) if cameras is not None else ()), workspace, *arms)

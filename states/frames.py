@@ -14,10 +14,14 @@ FRAMES_TOPIC = "cell/frames"
 
 async def part_in_world(ctx: Context, part: str) -> Pose | Cause:
     """Return the latest measured pose of a part in the world, or the cause if it is unknown."""
-    poses = (await ctx.latest(PARTS_TOPIC, PartPoses)).poses
-    if part in poses:
-        return poses[part]
-    return Cause(message=f"no such part is in the cell; {did_you_mean(part, poses)}", where=PARTS_TOPIC)
+    return measured_pose(await ctx.latest(PARTS_TOPIC, PartPoses), part)
+
+
+def measured_pose(parts: PartPoses, part: str) -> Pose | Cause:
+    """Return the pose of a part in a measurement of all, or the cause if it is unknown."""
+    if part in parts.poses:
+        return parts.poses[part]
+    return Cause(message=f"no such part is in the cell; {did_you_mean(part, parts.poses)}", where=PARTS_TOPIC)
 
 
 async def frame_in_world(ctx: Context, frame: str) -> Pose:

@@ -13,7 +13,7 @@ from editor_web.cell_view.rendering.layer_groups import LayerGroup
 from engine.bus import JsonBus
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription, SceneDescription
-from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.messages.sensing import CameraInfo, DepthImage, ObservedSpace, OccupancyGrid, OccupancyState
 from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
@@ -27,6 +27,7 @@ _ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, P
 _WHILE_SHOWN: dict[str, LayerGroup] = {
     OccupancyState.__name__: "voxels",
     OccupancyGrid.__name__: "voxels",
+    ObservedSpace.__name__: "voxels",
     DepthImage.__name__: "cameras",
     Detections.__name__: "detections",
 }

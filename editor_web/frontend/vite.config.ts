@@ -19,8 +19,15 @@ export default defineConfig({
     chunkSizeWarningLimit: 1600,
     manifest: true,
     rolldownOptions: {
-      // Each of the many small files of icons that views share would cost as much time as a large one.
-      output: { codeSplitting: { groups: [{ name: 'icons', test: /node_modules.@tabler/, minShareCount: 2 }] } },
+      // A file costs a request and time of its own: what the first page needs is one, what three views share another.
+      output: {
+        codeSplitting: {
+          groups: [
+            { name: 'first', tags: ['$initial'], priority: 2 },
+            { name: 'views', minShareCount: 3, priority: 1 },
+          ],
+        },
+      },
     },
   },
   worker: { format: 'es', plugins: () => [thirdParty.worker()] },

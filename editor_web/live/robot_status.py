@@ -10,6 +10,7 @@ from itertools import pairwise
 import msgspec
 
 from engine.project import Session
+from engine.skill import activity_words
 from engine.skills.arm_control import ArmStatus, SpeedOverride
 from engine.skills.planning import PathPreview
 
@@ -30,7 +31,7 @@ class PathLive(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
-    """One arm: its mode, its activity, the error of a reflex stop, and its speed override.
+    """One arm: its mode, its activity in words, the error of a reflex stop, and its speed override.
 
     `path` is its planned path, which the 3D view shows.
     """
@@ -84,7 +85,7 @@ class RobotStatusCache:
                 line = RobotLive(
                     name=arm,
                     mode=message.mode,
-                    activity=message.activity,
+                    activity=activity_words(message.activity),
                     error=message.error,
                     speed_override=message.settings.speed_override,
                     controller=message.settings.controller,

@@ -11,6 +11,7 @@ from engine.cell import tool_kinds
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, JointState, Message, RobotDescription
 from engine.project import Session
+from engine.skill import activity_words
 from engine.skills.arm_control import ArmStatus
 
 _STILL_RAD = 1e-4
@@ -78,7 +79,7 @@ class ArmStatusReader:
             pose = await self._pose(name)
         return ArmLive(
             mode=status.mode,
-            activity=status.activity,
+            activity=activity_words(status.activity),
             error=status.error,
             joints=joints,
             tool_pose=pose,

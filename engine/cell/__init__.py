@@ -6,10 +6,12 @@ The check reads the names of a cell without opening one, so each name is importe
 from engine.lazy_face import lazy_face
 
 _HOMES = {
+    "CameraCoverage": "engine.cell.camera_coverage",
     "CellConnection": "engine.cell.cell_connection",
     "CellItem": "engine.cell.cell_items",
     "CellItems": "engine.cell.cell_items",
     "OpenCell": "engine.cell.open_cell",
+    "RegionCoverage": "engine.cell.camera_coverage",
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",
     "ToolKind": "engine.cell.tool_kind",

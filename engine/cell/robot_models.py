@@ -12,6 +12,7 @@ from typing import Protocol
 
 import msgspec
 
+from engine.cell.camera_coverage import CameraCoverage
 from engine.cell.tool_kind import ToolKind
 from engine.document.cell import Cell
 from engine.errors import RegistryError
@@ -62,6 +63,15 @@ class RobotModels(Protocol):
 
     def drawn(self, cell: Cell) -> StaticCell:
         """Return the static cell, in which targets of arms can be checked; it is built at the first check."""
+        ...
+
+    def camera_coverage(self, cell: Cell) -> CameraCoverage:
+        """Return how much its cameras see of what they must see.
+
+        Raises:
+            CellError: the cell has no cameras with a map, or cannot be simulated.
+            DocumentError: as `summary`.
+        """
         ...
 
 

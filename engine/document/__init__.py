@@ -5,13 +5,25 @@ An invalid document raises `DocumentError` with file, line and column. Entries a
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.cell import Cell, CellDocument, Fixture, Jitter, MujocoWorld, PartSpec, RobotSpec, load_cell
+from engine.document.cell import (
+    Cell,
+    CellDocument,
+    Fixture,
+    Jitter,
+    MujocoWorld,
+    PartSpec,
+    RealismName,
+    RobotSpec,
+    load_cell,
+)
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
     ObjectDetector,
     OccupancyMap,
     Person,
+    UnknownBody,
+    UnknownSpacePolicy,
     arm_reach_m,
 )
 from engine.document.expression.expression import Template, compile_template
@@ -69,6 +81,7 @@ __all__ = [
     "PartSpec",
     "Person",
     "Placement",
+    "RealismName",
     "RetrySpec",
     "RobotSpec",
     "StateSignature",
@@ -76,6 +89,8 @@ __all__ = [
     "SweepDocument",
     "Template",
     "TimeoutSpec",
+    "UnknownBody",
+    "UnknownSpacePolicy",
     "any_value",
     "arm_reach_m",
     "bind_parameters",

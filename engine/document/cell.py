@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
+from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, UnknownBody
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.document.text.decoding import StrictModel, decode_document
@@ -45,15 +45,21 @@ class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", t
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
+RealismName = Literal["ideal", "typical", "poor"]
+
+
 class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
     """The simulated world.
 
     The two timeouts are for simulations in real time on a loaded machine: a longer one lets an arm move for
-    longer without supervision.
+    longer without supervision. `realism` says how far the arms differ from what their controllers know of them.
     """
 
     step_s: Annotated[float, Meta(gt=0.0, le=0.01, description="Physics step in seconds")] = 0.001
     gravity: bool = True
+    realism: Annotated[
+        RealismName, Meta(description="Friction, noise, delay, and errors of masses and calibration of the arms")
+    ] = "ideal"
     engine_silence_s: Annotated[
         float, Meta(ge=0.1, le=60.0, description="Seconds without an engine message after which all motion stops")
     ] = 0.2
@@ -179,6 +185,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     cameras: dict[Name, DepthCamera] = {}
     occupancy: OccupancyMap | None = None
     people: dict[Name, Person] = {}
+    unknown_bodies: dict[Name, UnknownBody] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -226,6 +233,8 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)
+    _require_unknown_bodies(document, source)
+    _require_regions(document, source)
     _require_topics(document, source)
     return Cell(document=document, file=file, source=source)
 
@@ -255,9 +264,10 @@ def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
 
 
 def _require_sizes(document: CellDocument, source: DocumentSource) -> None:
-    bodies: list[tuple[DataPath, Fixture | PartSpec]] = [
+    bodies: list[tuple[DataPath, Fixture | PartSpec | UnknownBody]] = [
         *((("fixtures", name), fixture) for name, fixture in document.fixtures.items()),
         *((("parts", name), part) for name, part in document.parts.items()),
+        *((("unknown_bodies", name), body) for name, body in document.unknown_bodies.items()),
     ]
     for path, body in bodies:
         meaning = _SIZES[body.shape]
@@ -329,6 +339,38 @@ def _require_people(document: CellDocument, source: DocumentSource) -> None:
                 where=source.position((*path, "hand_rests")),
                 hint=f"its reach is {least_m:.3f} to {greatest_m:.3f} m",
             )
+
+
+def _require_unknown_bodies(document: CellDocument, source: DocumentSource) -> None:
+    taken = {
+        **dict.fromkeys(document.parts, "part"),
+        **dict.fromkeys(document.fixtures, "fixture"),
+        **dict.fromkeys(document.robots, "robot"),
+        **dict.fromkeys(document.people, "person"),
+    }
+    for name in document.unknown_bodies:
+        path: DataPath = ("unknown_bodies", name)
+        if document.world is None:
+            raise DocumentError(
+                f"unknown body `{name}` is simulated, but the cell has no world",
+                where=source.position(path, of_key=True),
+                hint="add `world: {kind: mujoco}`",
+            )
+        if name in taken:
+            raise DocumentError(
+                f"`{name}` is both an unknown body and a {taken[name]}",
+                where=source.position(path, of_key=True),
+                hint="rename one",
+            )
+
+
+def _require_regions(document: CellDocument, source: DocumentSource) -> None:
+    if document.occupancy is not None and document.occupancy.must_cover and not document.cameras:
+        raise DocumentError(
+            "regions must be covered, but the cell has no camera",
+            where=source.position(("occupancy", "must_cover"), of_key=True),
+            hint="add `cameras:`",
+        )
 
 
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))

@@ -1,8 +1,8 @@
-"""Cameras, occupancy map and people in a cell document."""
+"""Cameras, occupancy map, people and unknown bodies in a cell document."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -65,19 +65,67 @@ class DepthCamera(StrictModel, frozen=True, kw_only=True):
     driver: Annotated[str, Meta(pattern="^sim$", description="`sim`")] = "sim"
 
 
+_ROUNDING_M = 1e-6
+
+UnknownSpacePolicy = Literal["refuse", "slow", "look_first", "accept"]
+
+
+class CoveredRegion(StrictModel, frozen=True, kw_only=True):
+    """An axis-aligned box of the world frame that the cameras must see."""
+
+    center_m: PositionXyz
+    size_m: tuple[Length, Length, Length]
+
+
 class OccupancyMap(StrictModel, frozen=True, kw_only=True):
     """The axis-aligned box in the world frame in which unknown objects count as obstacles.
 
     Camera measurements fill and clear it; without cameras it stays empty. Points nearer than `robot_margin_m`
     to an arm or its held object, or than `known_margin_m` to a fixture or part, are attributed to that and
     ignored.
+
+    Space that no camera has seen through for `seen_within_s` is unknown. `unknown_space` says what becomes of a
+    planned motion through unknown space: it is refused, slowed down, delayed until the cameras have seen it, or
+    carried out. With `must_cover`, regions by name, only space inside them counts. The default is `refuse` with
+    `must_cover`, else `accept`.
     """
 
     center_m: PositionXyz
     size_m: tuple[Length, Length, Length]
+    must_cover: dict[Name, CoveredRegion] = {}
+    unknown_space: UnknownSpacePolicy | None = None
+    seen_within_s: Annotated[
+        float, Meta(ge=0.2, le=25.0, description="Seconds after which space that no camera sees is unknown")
+    ] = 5.0
     voxel_m: Annotated[float, Meta(ge=0.005, le=0.1, description="Edge of a voxel in metres")] = 0.02
     robot_margin_m: Offset = 0.04
     known_margin_m: Offset = 0.03
+
+    def __post_init__(self) -> None:
+        for name, region in self.must_cover.items():
+            edges = zip(region.center_m, self.center_m, region.size_m, self.size_m, strict=True)
+            outside_m = max(abs(centre - middle) + (edge - whole) / 2.0 for centre, middle, edge, whole in edges)
+            if outside_m > _ROUNDING_M:
+                raise ValueError(f"the region {name} extends {outside_m:.3f} m beyond the box of the map")
+
+    @property
+    def unknown_space_policy(self) -> UnknownSpacePolicy:
+        """The policy as written, else its default."""
+        return self.unknown_space or ("refuse" if self.must_cover else "accept")
+
+
+class UnknownBody(StrictModel, frozen=True, kw_only=True):
+    """A body of the simulated world that nobody knows of: cameras see it, arms collide with it, and that is all.
+
+    It is no obstacle of planners and no name in lists and checks. `size_m` as for a part; `at` is its centre. With
+    `mass_kg` it is free, without it is fixed. For tests and demonstrations.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    size_m: tuple[Length, ...]
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")] | None = None
+    at: Placement = Placement()
+    color: Color = "#a04040"
 
 
 def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[float, float]:

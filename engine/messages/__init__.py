@@ -19,6 +19,7 @@ from engine.messages.robot_states import (
     ExternalTorque,
     GripperState,
     HandState,
+    HoldEvidence,
     JointState,
     RobotDescription,
 )
@@ -29,6 +30,7 @@ __all__ = [
     "FramePoses",
     "GripperState",
     "HandState",
+    "HoldEvidence",
     "JointState",
     "Message",
     "PartPoses",

@@ -43,8 +43,13 @@ class FramePoses(Message, frozen=True, kw_only=True):
     xyzw: tuple[Quaternion, ...]
 
 
-class PartPoses(Message, frozen=True, kw_only=True):
-    """The poses of the known parts of the cell in the world frame."""
+class PartPoses(Message, frozen=True, kw_only=True, omit_defaults=True):
+    """The poses of the known parts of the cell in the world frame.
+
+    `up` is the axis of a part, in its own frame, that points up when the part stands as the cell places it; null for
+    a part without one, such as a ball. Parts that are not listed have their z axis up.
+    """
 
     time_s: float
     poses: dict[str, Pose]
+    up: dict[str, Vector3 | None] = {}

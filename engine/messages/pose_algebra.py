@@ -12,7 +12,7 @@ _ZERO_ROTATION = 1e-9
 def compose_poses(outer: Pose, inner: Pose) -> Pose:
     """Return the pose `inner`, given in the frame that `outer` describes, in the frame of `outer`."""
     x, y, z = (a + b for a, b in zip(outer.xyz, rotate_vector(outer.xyzw, inner.xyz), strict=True))
-    return Pose(xyz=(x, y, z), xyzw=_product(outer.xyzw, inner.xyzw), frame=outer.frame)
+    return Pose(xyz=(x, y, z), xyzw=compose_rotations(outer.xyzw, inner.xyzw), frame=outer.frame)
 
 
 def rotate_vector(by: Quaternion, vector: Vector3) -> Vector3:
@@ -36,7 +36,7 @@ def angle_between_rad(one: Quaternion, other: Quaternion) -> float:
 def rotation_vector_between(one: Quaternion, other: Quaternion) -> Vector3:
     """Return the rotation vector (radians) from one orientation to the other with the smaller angle."""
     x, y, z, w = one
-    a, b, c, real = _product(other, (-x, -y, -z, w))
+    a, b, c, real = compose_rotations(other, (-x, -y, -z, w))
     length = math.hypot(a, b, c)
     if length < _ZERO_ROTATION:
         return (0.0, 0.0, 0.0)
@@ -65,9 +65,10 @@ def translate_pose(pose: Pose, offset_m: Vector3) -> Pose:
     return Pose(xyz=(x, y, z), xyzw=pose.xyzw, frame=pose.frame)
 
 
-def _product(one: Quaternion, other: Quaternion) -> Quaternion:
-    a, b, c, d = one
-    x, y, z, w = other
+def compose_rotations(outer: Quaternion, inner: Quaternion) -> Quaternion:
+    """Return the orientation `inner`, given in the frame that `outer` describes, in the frame of `outer`."""
+    a, b, c, d = outer
+    x, y, z, w = inner
     return (
         d * x + a * w + b * z - c * y,
         d * y - a * z + b * w + c * x,

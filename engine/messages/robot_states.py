@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
+from msgspec import UNSET, UnsetType
+
 from engine.messages.geometry import Message, Pose
+
+HoldEvidence = Literal["contact", "width", "current", "not measured"]
+"""What tells which body a tool holds.
+
+Only `contact` names the body. `width` (opening of fingers) and `current` (force of its drive) tell that
+something is held, and not what; with `not measured` nothing tells it.
+"""
 
 
 class JointState(Message, frozen=True, kw_only=True):
@@ -24,6 +35,7 @@ class GripperState(Message, frozen=True, kw_only=True, omit_defaults=True):
     held: bool
     part: str = ""
     """Name of the held part, `?` when unknown, empty for none."""
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class HandState(Message, frozen=True, kw_only=True):
@@ -35,6 +47,7 @@ class HandState(Message, frozen=True, kw_only=True):
     held: bool
     part: str = ""
     """Name of the held part, `?` when unknown, empty for none."""
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class ExternalTorque(Message, frozen=True, kw_only=True):

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from engine.messages.geometry import Message, Pose, Vector3
+
+CameraCondition = Literal["unknown", "healthy", "covered", "dark", "frozen", "late", "displaced", "miscalibrated"]
 
 
 class CameraIntrinsics(Message, frozen=True, kw_only=True):
@@ -21,7 +25,8 @@ class DepthImage(Message, frozen=True, kw_only=True):
 
     `pose` is that of the optical frame in the world when the image was taken: x to the right, y down, z into
     the scene. `depth_m` are float32 distances along z by rows, top row first; 0 for an invalid measurement,
-    infinity where nothing is within the camera's range (as in ROS, REP 117).
+    infinity where nothing is within the camera's range (as in ROS, REP 117). `brightness` is the mean of the
+    camera's own light image from 0 to 1, None if it has none.
     """
 
     time_s: float
@@ -29,6 +34,7 @@ class DepthImage(Message, frozen=True, kw_only=True):
     intrinsics: CameraIntrinsics
     pose: Pose
     depth_m: bytes
+    brightness: float | None = None
 
 
 class OccupancyGrid(Message, frozen=True, kw_only=True):
@@ -48,6 +54,26 @@ class OccupancyGrid(Message, frozen=True, kw_only=True):
     occupied: bytes
 
 
+NEVER_SEEN, LONG_UNSEEN = 255, 254
+"""Ages in `ObservedSpace`: never seen, and seen so long ago that the age does not fit."""
+
+
+class ObservedSpace(Message, frozen=True, kw_only=True):
+    """When the cameras last saw each voxel of the mapped box, published on `cell/observed_space`.
+
+    `ages` has one byte per voxel, x slowest and z fastest: tenths of a second before `time_s`, at most
+    `LONG_UNSEEN`, or `NEVER_SEEN`. A voxel is seen when a healthy camera measures something at or behind it. Space
+    that is known, such as fixtures, parts and the arms, has the age 0. Space older than `limit_s` is unknown.
+    """
+
+    time_s: float
+    corner_m: Vector3
+    voxel_m: float
+    shape: tuple[int, int, int]
+    limit_s: float
+    ages: bytes
+
+
 class CameraInfo(Message, frozen=True, kw_only=True):
     """The properties of a depth camera, the latest value of `<camera>/camera_info`; `pose` is its optical frame's.
 
@@ -59,6 +85,23 @@ class CameraInfo(Message, frozen=True, kw_only=True):
     pose: Pose
     rate_hz: float
     range_m: tuple[float, float]
+
+
+class CameraStatus(Message, frozen=True, kw_only=True):
+    """Whether the images of a camera can be relied on, the latest value of `<camera>/status`.
+
+    `unknown` stands before the first image. The `cause` of every other condition than `healthy` is a sentence.
+    """
+
+    time_s: float
+    camera: str
+    condition: CameraCondition
+    cause: str = ""
+
+    @property
+    def unhealthy(self) -> bool:
+        """True if the images are there but cannot be relied on."""
+        return self.condition not in ("healthy", "unknown")
 
 
 class OccupancyState(Message, frozen=True, kw_only=True):

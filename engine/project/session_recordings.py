@@ -31,7 +31,7 @@ _SUFFIX = ".mcap"
 _CLOSING_S = 5.0
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,120}")
 # A depth image is as large as all other messages of a second, and is produced only for viewers.
-_LEFT_OUT = ("*/depth",)
+_LEFT_OUT = ("*/depth", "cell/observed_space")
 _OVERHEARD = ("cell/occupancy",)
 
 _log = logging.getLogger("flexcell.recording")

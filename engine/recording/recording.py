@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from engine.errors import JournalError, RecordingError
 from engine.event import AnyEvent, RunEnded
 from engine.journal import decode_event
 from engine.recording.description import RECORD_NAME, RecordingDescription, from_metadata
+from engine.recording.event_digests import DIGESTS_NAME, altered_events
 from engine.recording.file_content import FileContent, read_content
 from engine.recording.finalization import EVENT_TOPIC, PART, part_file
 from engine.recording.recorded_documents import RecordedDocuments
@@ -35,6 +36,11 @@ class Recording:
     events: tuple[RecordedEvent, ...]
     resolution_s: float = 1e-9
     """Resolution of `at_s`."""
+    altered: Mapping[int, str] | None = None
+    """The recorded digests of events that were altered since, by index; None where there are no digests to tell.
+
+    Killed processes leave none, earlier versions and journals neither.
+    """
 
     @property
     def complete(self) -> bool:
@@ -71,6 +77,7 @@ def load_recording(path: Path) -> Recording:
         description=description,
         documents=documents,
         events=events,
+        altered=altered_events(content.metadata.get(DIGESTS_NAME), [message.data for message in content.messages]),
     )
 
 

@@ -18,6 +18,7 @@ from engine.event import AnyEvent, Event
 from engine.journal import encode_event
 from engine.recording.channel_schema import channel_schema
 from engine.recording.description import RECORD_NAME, RecordingDescription, present_versions, to_metadata
+from engine.recording.event_digests import DIGESTS_NAME, EventDigests
 from engine.recording.finalization import EVENT_TOPIC, finalize_recording, part_file, recovered_file
 from engine.recording.foxglove_views import FoxgloveLog, log_line
 from engine.recording.live_file import LiveFile, require_unused
@@ -66,6 +67,8 @@ class RunRecording:
         self._zero_s = 0.0
         self._epoch_ns = 0
         self._events = 0
+        self._digests = EventDigests()
+        self._closed = False
         self._event_channel = 0
         self._log_channel = 0
 
@@ -160,6 +163,9 @@ class RunRecording:
 
     def close(self) -> None:
         """Write queued records and keep the live file `<path>.part`; may block on the disk."""
+        if not self._closed and self._events > 0:
+            self._file.describe(DIGESTS_NAME, self._digests.to_metadata())
+        self._closed = True
         self._file.close()
         if self._file.left_out:
             _log.warning(
@@ -190,6 +196,7 @@ class RunRecording:
             self._file.give_up(error.message)
             return
         self._file.write(self._event_channel, now_ns, encoded, sequence=self._events)
+        self._digests.add(encoded)
         line = log_line(event, now_ns)
         if line is not None:
             self._file.write_if_quick(self._log_channel, now_ns, msgspec.json.encode(line), sequence=self._events)

@@ -11,6 +11,7 @@ from engine.errors import RecordingError
 from engine.event import BehaviorChanged, Event
 from engine.recording import RecordedEvent, Recording, recorded_behavior, recorded_substitutes
 from engine.recording.recorded_run import changed_behavior
+from engine.replay.document_differences import altered_records, changed_defaults
 from engine.replay.expected_events import replayed_events
 from engine.replay.order_search import search_order
 from engine.replay.replay_difference import ReplayDifference
@@ -24,8 +25,8 @@ class ReplayReport:
     """The result of a replay."""
 
     recording: Recording
-    difference: ReplayDifference | None
-    """None if the runs are equal."""
+    differences: tuple[ReplayDifference, ...]
+    """The first difference between the events, altered records, changed defaults; empty if the runs are equal."""
     events: tuple[Event, ...]
     """The events of the replay."""
     compared: int
@@ -34,9 +35,14 @@ class ReplayReport:
     """Duration of the replay on the wall clock."""
 
     @property
+    def difference(self) -> ReplayDifference | None:
+        """The first of the differences; None if the runs are equal."""
+        return self.differences[0] if self.differences else None
+
+    @property
     def same(self) -> bool:
-        """Whether all recorded events occurred and no others."""
-        return self.difference is None
+        """Whether all recorded events occurred and no others, unaltered, and with no other defaults."""
+        return not self.differences
 
 
 def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | None = None) -> ReplayReport:
@@ -63,7 +69,11 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
         again = search_order(again, attempt, expected)
     return ReplayReport(
         recording=recording,
-        difference=again.difference,
+        differences=(
+            *((again.difference,) if again.difference is not None else ()),
+            *altered_records(recording),
+            *(changed_defaults(recording, behavior) if behavior is not None else ()),
+        ),
         events=tuple(again.events),
         compared=again.met,
         duration_s=perf_counter() - started_s,

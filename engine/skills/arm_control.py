@@ -54,7 +54,7 @@ class ArmStatus(Message, frozen=True, kw_only=True):
 
     `activity` names the active skill, or what a goal waits for. `error` is the reason why the last skill
     failed or the arm stopped by itself; it is empty after a success. `external_nm` and `wrench` are the
-    measured external joint torques and the external wrench on the tool at the time of the message.
+    estimated external joint torques and the external wrench on the tool at the time of the message.
     """
 
     mode: ArmMode

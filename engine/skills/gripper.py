@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Annotated
 
 import msgspec
+from msgspec import UNSET, UnsetType
 
-from engine.messages import GripperState, Message
+from engine.messages import GripperState, HoldEvidence, Message
 from engine.skill import Action, Service
 
 Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the pads", extra_json_schema={"unit": "m"})]
@@ -36,14 +37,16 @@ class GraspResult(Message, frozen=True, kw_only=True):
     """Whether the fingers hold a part, judged from pad contact and their final opening.
 
     `reason` is why nothing is held; it is empty when `held`. `start` is the setting of the gripper before,
-    when known.
+    when known. `part` is the name of the held part, `?` when unknown, and `by` what tells it, where the tool says so.
     """
 
     held: bool
     width_m: float
     force_n: float
     reason: str = ""
-    start: GripperSetting | msgspec.UnsetType = msgspec.UNSET
+    start: GripperSetting | UnsetType = UNSET
+    part: str | UnsetType = UNSET
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Annotated
 
 import msgspec
+from msgspec import UNSET, UnsetType
 
-from engine.messages import HandState, Message
+from engine.messages import HandState, HoldEvidence, Message
 from engine.skill import Action, Service
 
 Percent = Annotated[float, msgspec.Meta(ge=0.0, le=100.0, description="Closing position: 0 open, 100 closed")]
@@ -22,8 +23,8 @@ class HandFeedback(Message, frozen=True, kw_only=True):
 class HandResult(Message, frozen=True, kw_only=True):
     """Whether the hand holds a part, judged from the contacts of thumb, fingers and palm.
 
-    `part` is the name of the held part, `?` when unknown; `reason` is why nothing is held, and
-    is empty when `held`.
+    `part` is the name of the held part, `?` when unknown, and `by` what tells it; `reason` is why nothing is
+    held, and is empty when `held`.
     """
 
     held: bool
@@ -31,6 +32,7 @@ class HandResult(Message, frozen=True, kw_only=True):
     force_n: float
     part: str = ""
     reason: str = ""
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class HandClose(Action[HandResult, HandFeedback], frozen=True, kw_only=True):

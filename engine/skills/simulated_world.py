@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -42,3 +42,37 @@ class PushBody(Service[PushBodyResult], frozen=True, kw_only=True):
     force_n: Vector3
     duration_s: Annotated[float, msgspec.Meta(gt=0.0, le=LONGEST_PUSH_S)]
     at_m: Vector3 = (0.0, 0.0, 0.0)
+
+
+CameraFaultKind = Literal["none", "covered", "dark", "frozen", "late", "displaced", "miscalibrated"]
+
+
+class CameraFault(Message, frozen=True, kw_only=True):
+    """A fault of a simulated camera.
+
+    `covered`: something is before the lens, at `cover_m`. `dark`: no light. `frozen`: the last image again, with new
+    stamps. `late`: images come `delay_s` after their stamps. `displaced`: it stands at `offset_m` (world) from where it
+    is calibrated, and is turned by `turn_rad`, a rotation vector in its optical frame. `miscalibrated`: its real
+    focal length is `focal_scale` times that of its calibration.
+    """
+
+    kind: CameraFaultKind = "none"
+    cover_m: Annotated[float, msgspec.Meta(gt=0.0)] = 0.05
+    delay_s: Annotated[float, msgspec.Meta(gt=0.0)] = 1.0
+    offset_m: Vector3 = (0.0, 0.0, 0.0)
+    turn_rad: Vector3 = (0.0, 0.0, 0.0)
+    focal_scale: Annotated[float, msgspec.Meta(gt=0.0)] = 1.0
+
+
+class SetCameraFaultResult(Message, frozen=True, kw_only=True):
+    """The camera and the kind of its fault."""
+
+    camera: str
+    kind: CameraFaultKind
+
+
+class SetCameraFault(Service[SetCameraFaultResult], frozen=True, kw_only=True):
+    """Give a camera a fault from its next image on; one of the kind `none` ends it. For tests and demonstrations."""
+
+    camera: str
+    fault: CameraFault

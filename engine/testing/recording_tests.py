@@ -1,4 +1,4 @@
-"""Recordings as pytest tests: one test per recording, which replays it and fails with the first difference."""
+"""Recordings as pytest tests: one test per recording, which replays it and fails with the differences."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ class RecordingTestItem(pytest.Item):
         for name, value in (("run", description.run), ("document_sha256", description.document)):
             self.user_properties.append((name, value))
         report = replay(recording, load_states(self.config.rootpath))
-        if report.difference is not None:
-            raise ReplayDiffers(report.difference)
+        if not report.same:
+            raise ReplayDiffers(report.differences)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: object = None) -> str:
         """Return the difference, or why the recording cannot be replayed; no traceback of the engine."""
         error = excinfo.value
         if isinstance(error, ReplayDiffers):
-            return f"{self.path}: {error.difference.explained()}"
+            return "\n".join(f"{self.path}: {each.explained()}" for each in error.differences)
         if isinstance(error, FlexcellError):
             return str(error) if str(self.path) in str(error) else f"{self.path}: {error}"
         return str(super().repr_failure(excinfo))
@@ -56,6 +56,6 @@ class RecordingTestItem(pytest.Item):
 class ReplayDiffers(AssertionError):
     """A replay differs from its recording."""
 
-    def __init__(self, difference: ReplayDifference) -> None:
-        super().__init__(str(difference))
-        self.difference = difference
+    def __init__(self, differences: tuple[ReplayDifference, ...]) -> None:
+        super().__init__("; ".join(map(str, differences)))
+        self.differences = differences

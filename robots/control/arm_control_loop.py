@@ -14,19 +14,22 @@ from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
 from robots.control.collision_reflex import CollisionReflex
 from robots.control.generators.motion_generator import MotionGenerator
+from robots.control.kernels import add_feedforward
 from robots.control.laws.cartesian_impedance import CartesianImpedance
 from robots.control.laws.controller import Controller
 from robots.control.laws.gravity_compensation import GravityCompensation
 from robots.control.laws.joint_impedance import JointImpedance, nominal_stiffness_nm_rad
 from robots.control.laws.torque_blend import TorqueBlend
+from robots.control.momentum_observer import MomentumObserver
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTripped
 from robots.control.motion_executor import MotionExecutor
 from robots.control.set_point_watch import SetPointWatch
+from robots.model.mechanics.dynamics import ArmDynamics
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.port import Array, MotionEnd, MotionReport, Tolerance
 
-# External forces pass this low-pass filter, as in wrist sensors.
+# Measured forces pass this low-pass filter, as in wrist sensors.
 _FELT_HZ = 60.0
 _BLEND_S, _REFLEX_BLEND_S = 0.1, 0.02
 # After a reflex stop the arm holds with this share of its nominal stiffness.
@@ -36,12 +39,12 @@ _REFLEX_STIFFNESS = 0.2
 class ArmControlLoop:
     """Owned by one control loop, which calls `measure`, `advance` and `torque` once per period, in this order.
 
-    Without thresholds in its settings the arm has no collision reflex.
+    Without thresholds in its settings the arm has no collision reflex. What it knows of the arm is the nominal model
+    of the model folders and the load of its settings: feed-forward and external torques are computed from these.
 
     Args:
         name: Name of the arm, for messages.
         kinematics: Kinematics of the arm, used by this loop only.
-        inertia_kg_m2: Diagonal of the mass matrix at home, (n,); determines the joint damping.
         gravity_m_s2: Gravity in the world, (3,).
         touching: Describes what the arm touches; empty for nothing.
         on_jump: What follows a set point beyond the limits. `report`, in simulation, sends it and reports it; `stop`,
@@ -53,7 +56,6 @@ class ArmControlLoop:
         *,
         name: str,
         kinematics: ArmKinematics,
-        inertia_kg_m2: Array,
         gravity_m_s2: Array,
         touching: Callable[[], str],
         on_jump: Literal["report", "stop"] = "report",
@@ -67,7 +69,11 @@ class ArmControlLoop:
         self._touching = touching
         self.motion = MotionExecutor(joints=model.arm_joints, limits=limits, touching=self._felt)
         self._kinematics = kinematics
-        self._inertia = inertia_kg_m2
+        self._dynamics = dynamics = ArmDynamics(model, base=kinematics.base, gravity_m_s2=gravity_m_s2)
+        # Determines the joint damping.
+        self._inertia = np.diag(dynamics.mass_matrix(np.array(model.home_rad))).copy()
+        self._feedforward_nm = np.zeros(model.dof)
+        self._observer = MomentumObserver(model.dof)
         self._limit_nm = np.array(limits.effort_nm)
         self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
         self.watch = SetPointWatch(arm=name, joints=model.arm_joints, limits=limits)
@@ -87,9 +93,9 @@ class ArmControlLoop:
         self._blend = TorqueBlend(limit_nm=self._limit_nm)
         self._untold: list[AnyMotionEvent] = []
         for law in (*self._holding.values(), self._floating):
-            law.initialize(settings=self.settings, inertia_kg_m2=inertia_kg_m2)
+            law.initialize(settings=self.settings, inertia_kg_m2=self._inertia)
         soft = tuple((_REFLEX_STIFFNESS * nominal_stiffness_nm_rad(limits)).tolist())
-        self._yielding.initialize(settings=ControlSettings(joint_stiffness_nm_rad=soft), inertia_kg_m2=inertia_kg_m2)
+        self._yielding.initialize(settings=ControlSettings(joint_stiffness_nm_rad=soft), inertia_kg_m2=self._inertia)
 
     @property
     def reflex(self) -> bool:
@@ -111,6 +117,7 @@ class ArmControlLoop:
         """Hold `position`, with or without an active reflex; drops the active motion and the filtered forces."""
         self.motion.initialize(position)
         self.watch.restart(position)
+        self._observer.forget()
         self.state.external_nm[:] = 0.0
         self.state.wrench[:] = 0.0
         self._load.forget_motion()
@@ -158,20 +165,21 @@ class ArmControlLoop:
             self.motion.initialize(self.state.position)
             self.watch.restart(self.state.position)
 
-    def measure(self, position: Array, velocity: Array, *, pull_nm: Array, wrench: Array, step_s: float) -> None:
+    def measure(self, position: Array, velocity: Array, *, wrench: Array, step_s: float) -> None:
         """Take the measurements of a period.
 
-        `pull_nm` (n,) is the joint torque of everything outside the arm's model, `wrench` (6,) its force and
-        torque on the tool about the tool centre point, world axes; the load is subtracted from both.
+        `wrench` (6,) is the force and torque of everything outside the arm's model on the tool, about the tool centre
+        point, world axes; that of the load is subtracted.
         """
-        state = self.state
+        state, load_nm = self.state, None
         state.refill(position, velocity)
         if not self._load.none:
             self._load.measure(state, step_s)
-            pull_nm = pull_nm - self._load.felt_nm()
+            load_nm = self._load.felt_nm()
             wrench = wrench - self._load.felt_at(state.tool.xyz)
+        self._observer.measure(velocity, load_nm=load_nm, step_s=step_s)
+        state.external_nm[:] = self._observer.external_nm
         share = 1.0 - math.exp(-2.0 * math.pi * _FELT_HZ * step_s)
-        state.external_nm += share * (pull_nm - state.external_nm)
         state.wrench += share * (wrench - state.wrench)
 
     def advance(self, step_s: float) -> list[AnyMotionEvent]:
@@ -190,21 +198,26 @@ class ArmControlLoop:
                 self.watch.look(step_s, self.motion)
         return events
 
-    def torque(self, feedforward_nm: Array, *, step_s: float) -> Array:
-        """Return the joint torques, (n,), within the limits; reused by the next call.
-
-        `feedforward_nm` is gravity and Coriolis of the arm's model now, and its inertia along the set point.
-        """
+    def torque(self, *, step_s: float) -> Array:
+        """Return the joint torques, (n,), within the limits; reused by the next call."""
         law = self._selected_law()
         if law is not self._law:
             self._law.terminate()
             self._law = law
             self._blend.start(duration_s=_REFLEX_BLEND_S if law is self._yielding else _BLEND_S)
+        state, motion, dynamics = self.state, self.motion, self._dynamics
+        mass = dynamics.mass_matrix(state.position)
+        bias_nm = dynamics.bias(state.position, state.velocity)
+        feedforward_nm = self._feedforward_nm
+        damping, acceleration = dynamics.damping_nms_rad, motion.acceleration
+        add_feedforward(mass, bias_nm, state.velocity, acceleration, damping, feedforward_nm)
         bearing_nm = feedforward_nm
         if not self._load.none:
-            bearing_nm = feedforward_nm + self._load.bearing_nm(self.motion.acceleration)
-        torque = law.step(self.state, self.motion, feedforward_nm=bearing_nm)
-        return self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
+            bearing_nm = feedforward_nm + self._load.bearing_nm(acceleration)
+        torque = law.step(state, motion, feedforward_nm=bearing_nm)
+        torque = self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
+        self._observer.command(torque, velocity=state.velocity, mass_matrix=mass, bias_nm=bias_nm)
+        return torque
 
     def _selected_law(self) -> Controller:
         if not self.motion.leads:

@@ -315,3 +315,32 @@ def compare_set_point(step_s: float, position: Array, past: Array, limits: Array
             exceeded, largest = quantity, abs(value) / limit if limit > 0.0 else 0.0
             worst[0], worst[1], worst[2] = joint, value, limit
     return exceeded % 5
+
+
+@compiled(f"void({_ANY}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW})")
+def add_feedforward(
+    mass: Array, bias: Array, velocity: Array, acceleration: Array, damping: Array, feedforward: Array
+) -> None:
+    """Write the torques that carry and accelerate an arm, (n,), and add its dampers to `bias`.
+
+    `mass` (n, n) and `bias` (n,) are M and C q̇ + g, `acceleration` (n,) is that of the set point, `damping` (n,) in
+    N m s/rad.
+    """
+    for i in range(len(bias)):
+        total = bias[i]
+        for j in range(len(bias)):
+            total += mass[i, j] * acceleration[j]
+        feedforward[i] = total
+        bias[i] += damping[i] * velocity[i]
+
+
+@compiled(f"void({_ANY}, {_ROW}, {_ROW}, {_ROW}, f8, f8, {_ROW})")
+def observe_momentum(
+    mass: Array, before: Array, velocity: Array, known: Array, step_s: float, share: float, external: Array
+) -> None:
+    """Move the estimate `external` (n,) by `share` towards M Δq̇ / Δt minus the `known` torques (n,)."""
+    for i in range(len(external)):
+        total = -known[i]
+        for j in range(len(external)):
+            total += mass[i, j] * ((velocity[j] - before[j]) / step_s)
+        external[i] += share * (total - external[i])

@@ -16,7 +16,7 @@ from engine.skills.gripper import (
 )
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import GripperPort, GripperSample
-from robots.port.grasp_check import UNKNOWN_BODY, GraspCommand, check_grasp
+from robots.port.grasp_check import GraspCommand, check_grasp, grasp_evidence, held_part
 
 _MOVE_FORCE_N = 30.0
 _AT_WIDTH_M = 0.002
@@ -75,7 +75,15 @@ class GripperServer:
         await self._carry_out(0.0, goal.speed_m_s, goal.force_n, handle)
         sample = self._port.sample()
         reason = check_grasp(sample, self.grip)
-        return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
+        return GraspResult(
+            held=not reason,
+            width_m=sample.width_m,
+            force_n=sample.force_n,
+            reason=reason,
+            start=start,
+            part="" if reason else held_part(sample),
+            by=grasp_evidence(sample),
+        )
 
     async def _read(self, request: ReadGripper) -> GripperState:
         sample = self._port.sample()
@@ -85,7 +93,8 @@ class GripperServer:
             width_m=sample.width_m,
             force_n=sample.force_n,
             held=held,
-            part=_held_part(sample) if held else "",
+            part=held_part(sample) if held else "",
+            by=grasp_evidence(sample),
         )
 
     async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
@@ -129,11 +138,6 @@ class GripperServer:
         await self._motion.carry_out(
             lambda: self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n), handle, report
         )
-
-
-def _held_part(sample: GripperSample) -> str:
-    """Return the name of what both pads press on, `?` where neither can tell."""
-    return next((body for body in sample.contacts if body and body != UNKNOWN_BODY), UNKNOWN_BODY)
 
 
 def _touching(sample: GripperSample) -> str:

@@ -7,7 +7,7 @@ from engine.messages import HandState
 from engine.skills.hand import HandClose, HandFeedback, HandOpen, HandResult, ReadHand
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import GraspCommand, HandPort
-from robots.port.hand_grasp_check import check_hand_grasp, hand_state
+from robots.port.hand_grasp_check import check_hand_grasp, hand_evidence, hand_state
 
 
 class HandServer:
@@ -59,4 +59,5 @@ class HandServer:
             force_n=sample.force_n,
             part=holding.part,
             reason=holding.reason,
+            by=hand_evidence(sample),
         )

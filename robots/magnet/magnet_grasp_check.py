@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from engine.messages import HoldEvidence
+from engine.skills.part_label import UNKNOWN_BODY, hold_evidence
 from robots.magnet.magnet_port import MagnetSample
 from robots.magnet.magnet_skills import MagnetState
 
@@ -16,9 +18,14 @@ def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
     if not sample.contact:
         return "the magnet is on and touches nothing"
     if sample.pull_n < _HOLDS_SHARE * max_force_n:
-        touched = "something" if sample.contact == "?" else sample.contact
+        touched = "something" if sample.contact == UNKNOWN_BODY else sample.contact
         return f"the magnet touches {touched} and pulls at it with {sample.pull_n:.1f} N of {max_force_n:.0f} N"
     return ""
+
+
+def magnet_evidence(sample: MagnetSample) -> HoldEvidence:
+    """Return what tells whether and what a magnet holds."""
+    return hold_evidence(sample.contact, otherwise="current")
 
 
 def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
@@ -30,4 +37,5 @@ def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
         pull_n=sample.pull_n,
         held=held,
         part=sample.contact if held else "",
+        by=magnet_evidence(sample),
     )

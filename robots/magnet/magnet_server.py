@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.bus import ActiveGoal, SkillBus
 from robots.gripper.tool_motion import ToolMotion
-from robots.magnet.magnet_grasp_check import check_magnet_grasp, magnet_state
+from robots.magnet.magnet_grasp_check import check_magnet_grasp, magnet_evidence, magnet_state
 from robots.magnet.magnet_port import MagnetPort
 from robots.magnet.magnet_skills import MagnetFeedback, MagnetResult, MagnetState, MagnetSwitch, ReadMagnet
 from robots.port import GraspCommand
@@ -49,6 +49,7 @@ class MagnetServer:
             pull_n=sample.pull_n,
             part=sample.contact if not reason else "",
             reason=reason,
+            by=magnet_evidence(sample),
         )
 
     async def _read(self, request: ReadMagnet) -> MagnetState:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from engine.messages import Message
+from msgspec import UNSET, UnsetType
+
+from engine.messages import HoldEvidence, Message
 from engine.skill import Action, Service
 
 
@@ -15,6 +17,7 @@ class MagnetState(Message, frozen=True, kw_only=True):
     held: bool
     part: str = ""
     """Name of the held part, `?` when unknown, empty for none."""
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class MagnetFeedback(Message, frozen=True, kw_only=True):
@@ -26,8 +29,8 @@ class MagnetFeedback(Message, frozen=True, kw_only=True):
 class MagnetResult(Message, frozen=True, kw_only=True):
     """Whether the magnet holds a part when its field has settled.
 
-    `part` is the name of the held part, `?` when unknown; `reason` is why nothing is held, and
-    is empty when `held`.
+    `part` is the name of the held part, `?` when unknown, and `by` what tells it; `reason` is why nothing is
+    held, and is empty when `held`.
     """
 
     on: bool
@@ -35,6 +38,7 @@ class MagnetResult(Message, frozen=True, kw_only=True):
     pull_n: float
     part: str = ""
     reason: str = ""
+    by: HoldEvidence | UnsetType = UNSET
 
 
 class MagnetSwitch(Action[MagnetResult, MagnetFeedback], frozen=True, kw_only=True):

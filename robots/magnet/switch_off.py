@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from engine.cause_chain import wrap_cause
 from engine.errors import Cause
-from engine.skills.part_label import PartLabel
+from engine.skills.part_label import UNKNOWN_BODY, PartLabel
 from engine.state import Context, Outcome, State, goal_cause
 from robots.magnet.magnet_parameter_types import MagnetName, magnet_address
 from robots.magnet.magnet_skills import MagnetSwitch
@@ -37,7 +37,8 @@ class Off(State, frozen=True, kw_only=True):
             return Outcome("failed", cause=cause)
         if not end.result.held:
             return Outcome("released")
+        held = f" at {end.result.part}" if end.result.part not in ("", UNKNOWN_BODY) else ""
         because = Cause(
-            message=f"it still pulls with {end.result.pull_n:.1f} N", where=f"{address}/{goal.skill_name()}"
+            message=f"it still pulls{held} with {end.result.pull_n:.1f} N", where=f"{address}/{goal.skill_name()}"
         )
         return Outcome("failed", cause=wrap_cause(what, because, where=ctx.path, kind=self.state_name))

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from engine.cause_chain import wrap_cause
 from engine.errors import Cause
-from engine.skills.part_label import PartLabel, part_label
+from engine.skills.part_label import PartLabel, part_label, wrong_part
 from engine.state import Context, Outcome, State, goal_cause
 from robots.magnet.magnet_parameter_types import MagnetName, magnet_address
 from robots.magnet.magnet_skills import MagnetSwitch
@@ -16,7 +16,9 @@ from robots.magnet.magnet_skills import MagnetSwitch
 class On(State, frozen=True, kw_only=True):
     """Switch a magnet on: `held` when it pulls on a part in contact with its face, else `missed`.
 
-    After `missed` it stays on. Always writes `held`; writes the pull force `pull_n` if the magnet measured it.
+    `missed` also when it holds another part than `part`; a magnet that cannot name what it touches reports
+    `by: current`. After `missed` it stays on. Always writes `held`; writes the pull force `pull_n` if the magnet
+    measured it.
     """
 
     state_name: ClassVar[str] = "magnet.On"
@@ -41,11 +43,13 @@ class On(State, frozen=True, kw_only=True):
         if end.status != "succeeded" or end.result is None:
             cause = goal_cause(failure, goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
-        outputs = {"held": end.result.held, "pull_n": end.result.pull_n}
-        if end.result.held:
+        where = f"{address}/{goal.skill_name()}"
+        wrong = wrong_part(self.part, end.result.part, where=where)
+        held = end.result.held and wrong is None
+        outputs = {"held": held, "pull_n": end.result.pull_n}
+        if held:
             return Outcome("held", outputs)
-        because = Cause(
-            message=end.result.reason or "nothing is held and the magnet gave no reason",
-            where=f"{address}/{goal.skill_name()}",
+        because = wrong or Cause(
+            message=end.result.reason or "nothing is held and the magnet gave no reason", where=where
         )
         return Outcome("missed", outputs, wrap_cause(failure, because, where=ctx.path, kind=self.state_name))

@@ -90,13 +90,14 @@ def check_speed(
     least_s = duration_s * max(float(slow.max()), math.sqrt(float(hard.max())))
     if least_s <= duration_s:
         return
+    asked = f", to arrive after {duration_s:.3g} s"
     if slow.max() > 1.0:
         at, joint = np.unravel_index(int(np.argmax(slow)), slow.shape)
         what = f"{names[joint]} would need {abs(peaks[at, joint]):.2g} rad/s at t={times[at]:.2f} s"
-        raise RobotError(f"{what}, limit {speed_limit[joint]:.3g}", hint=advice(least_s))
+        raise RobotError(f"{what}, limit {speed_limit[joint]:.3g}{asked}", hint=advice(least_s))
     at, joint = np.unravel_index(int(np.argmax(hard)), hard.shape)
     what = f"{names[joint]} would need {abs(pushes[at, joint]):.2g} rad/s² at t={times[at]:.2f} s"
-    raise RobotError(f"{what}, limit {push_limit[joint]:.3g}", hint=advice(least_s))
+    raise RobotError(f"{what}, limit {push_limit[joint]:.3g}{asked}", hint=advice(least_s))
 
 
 def _accelerations(trajectory: JointTrajectory) -> tuple[Array, Array]:

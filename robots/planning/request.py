@@ -22,6 +22,7 @@ RefusalReason = Literal[
     "goal_unreachable",
     "way_blocked",
     "no_path_in_time",
+    "unknown_space",
     "unknown_planner",
     "cancelled",
 ]

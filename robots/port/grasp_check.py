@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from engine.messages import HoldEvidence
+from engine.skills.part_label import UNKNOWN_BODY, hold_evidence
 from robots.port.gripper import GripperSample
 
 # In motion the pad force oscillates about the commanded one.
 FORCE_SHARE = 0.5
-UNKNOWN_BODY = "?"
-"""What a pad that touches something it cannot name reports."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +38,16 @@ def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
     if sample.force_n < FORCE_SHARE * grip.force_n:
         return f"the pads press with {sample.force_n:.1f} N on {_name(left)}, expected {grip.force_n:.1f} N"
     return ""
+
+
+def held_part(sample: GripperSample) -> str:
+    """Return the name of what both pads press on, `?` where neither can tell."""
+    return next((body for body in sample.contacts if body and body != UNKNOWN_BODY), UNKNOWN_BODY)
+
+
+def grasp_evidence(sample: GripperSample) -> HoldEvidence:
+    """Return what tells whether and what a gripper holds."""
+    return hold_evidence(*sample.contacts, otherwise="width")
 
 
 def _name(body: str) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.messages import HandState
+from engine.messages import HandState, HoldEvidence
+from engine.skills.part_label import UNKNOWN_BODY, hold_evidence
 from robots.port.hand import HandSample
 
-_UNKNOWN = "?"
 _OPEN_SHARE = 0.01
 # Fingers that merely touch take hardly more force than closing on nothing.
 _PRESSES_SHARE = 0.03
@@ -29,17 +29,22 @@ def check_hand_grasp(sample: HandSample, *, max_force_n: float) -> HandGrasp:
     if not any(sample.contacts):
         return HandGrasp(reason=f"the hand closed to {closed} and touches nothing")
     thumb, *fingers, palm = sample.contacts
-    known = tuple(dict.fromkeys(body for body in sample.contacts if body and body != _UNKNOWN))
+    known = tuple(dict.fromkeys(body for body in sample.contacts if body and body != UNKNOWN_BODY))
     words = " and ".join(known) or "something"
     if not any(fingers):
         return HandGrasp(reason=f"only {'the thumb' if thumb else 'the palm'} touches {words}, at {closed}")
     if sample.force_n < _PRESSES_SHARE * max_force_n:
         return HandGrasp(reason=f"the hand touches {words} at {closed} and presses with {sample.force_n:.1f} N only")
-    for body in known or (_UNKNOWN,):
-        meant = (body, _UNKNOWN)
+    for body in known or (UNKNOWN_BODY,):
+        meant = (body, UNKNOWN_BODY)
         if (thumb in meant or palm in meant) and any(finger in meant for finger in fingers):
             return HandGrasp(part=body)
     return HandGrasp(reason=f"the fingers touch {words} at {closed}, but neither thumb nor palm opposes them")
+
+
+def hand_evidence(sample: HandSample) -> HoldEvidence:
+    """Return what tells whether and what a hand holds."""
+    return hold_evidence(*sample.contacts, otherwise="current")
 
 
 def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
@@ -51,4 +56,5 @@ def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
         force_n=sample.force_n,
         held=bool(part),
         part=part,
+        by=hand_evidence(sample),
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import CellDocument, Fixture, Person, RobotSpec
+from engine.document import CellDocument, Fixture, Person, RobotSpec, UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose
@@ -18,6 +18,8 @@ Resolve = Callable[[str], Path]
 
 def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Resolve = Path) -> SimScene:
     """Return the scene of a cell; with a `seed`, parts are displaced by their jitter.
+
+    The errors of the arms are drawn with the seed too, with 0 without one.
 
     Robots with another driver than `sim` are omitted. `resolve` resolves the document's paths
     (`Cell.resolve`).
@@ -32,6 +34,8 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
     return SimScene(
         step_s=world.step_s,
         gravity=world.gravity,
+        realism=world.realism,
+        seed=seed if seed is not None else 0,
         engine_silence_s=world.engine_silence_s,
         world_silence_s=world.world_silence_s,
         start_limit_s=world.start_limit_s,
@@ -39,6 +43,14 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
         people=tuple(_person(name, person) for name, person in document.people.items()),
+        unknown_fixtures=tuple(
+            _unknown_fixture(name, body) for name, body in document.unknown_bodies.items() if body.mass_kg is None
+        ),
+        unknown_parts=tuple(
+            _unknown_part(name, body, mass_kg=body.mass_kg)
+            for name, body in document.unknown_bodies.items()
+            if body.mass_kg is not None
+        ),
     )
 
 
@@ -98,6 +110,21 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
             )
         )
     return bodies
+
+
+def _unknown_fixture(name: str, body: UnknownBody) -> FixtureBody:
+    return FixtureBody(name=name, shape=body.shape, size_m=body.size_m, pose=body.at.pose(), rgba=_rgba(body.color))
+
+
+def _unknown_part(name: str, body: UnknownBody, *, mass_kg: float) -> PartBody:
+    return PartBody(
+        name=name,
+        shape=body.shape,
+        size_m=body.size_m,
+        mass_kg=mass_kg,
+        pose=body.at.pose(),
+        rgba=_rgba(body.color),
+    )
 
 
 def _person(name: str, person: Person) -> PersonBody:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import arm_reach_m
+from engine.document import RealismName, arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
@@ -112,6 +112,8 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
 
     In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
     other side reacts, see `robots.port.control_process`; `start_limit_s` limits how long its process builds the world.
+    The unknown bodies are in the physics and in images of cameras, but in no planning scene and among no parts.
+    The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
     """
 
     step_s: float = 0.001
@@ -119,7 +121,11 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     world_silence_s: float = CONTROL_SILENCE_S
     start_limit_s: float = 180.0
     gravity: bool = True
+    realism: RealismName = "ideal"
+    seed: int = 0
     arms: tuple[ArmPlacement, ...] = ()
     fixtures: tuple[FixtureBody, ...] = ()
     parts: tuple[PartBody, ...] = ()
     people: tuple[PersonBody, ...] = ()
+    unknown_fixtures: tuple[FixtureBody, ...] = ()
+    unknown_parts: tuple[PartBody, ...] = ()

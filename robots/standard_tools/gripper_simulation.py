@@ -10,6 +10,7 @@ from robots.control.tool_drives.finger_servo import FingerServo
 from robots.gripper import GripperServer, ToolServer
 from robots.model.finger_mechanisms import ClawModel, GripperModel, LinkageModel
 from robots.model.tool_model import ToolModel
+from robots.port.grasp_check import grasp_evidence
 from robots.sim.grip.mechanics import ToolMechanics
 from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
@@ -87,6 +88,7 @@ class GripperSimulation:
             force_n=sample.force_n,
             held=held,
             part=left if held else "",
+            by=grasp_evidence(sample),
         )
 
     def server(self, name: str, world: SimWorld, arm: str) -> ToolServer:

@@ -33,6 +33,7 @@ def cell_cameras(
         scene=scene,
         cameras=tuple(camera_of(name, camera) for name, camera in document.cameras.items()),
         box=voxel_box(document.occupancy) if document.occupancy is not None else None,
+        observes=document.occupancy is not None and document.occupancy.unknown_space_policy != "accept",
         seed=seed or 0,
     )
     if isinstance(world.host, LockstepHost):

@@ -8,8 +8,18 @@ from collections.abc import Callable, Mapping
 import msgspec
 
 from engine.bus import SkillBus, Topic
-from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.errors import SkillFailed
+from engine.messages.sensing import (
+    CameraInfo,
+    CameraStatus,
+    DepthImage,
+    ObservedSpace,
+    OccupancyGrid,
+    OccupancyState,
+)
 from engine.robot import DeviceStatus
+from engine.skills.simulated_world import CameraFault, SetCameraFault, SetCameraFaultResult
+from engine.suggestions import did_you_mean
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
 from robots.sim.world.sim_world import SimWorld
@@ -51,7 +61,14 @@ class PerceptionDevice:
         self._forget = False
         self._base = 0
         self._last: PerceptionResult | None = None
+        self.observed: ObservedSpace | None = None
+        self._statuses = {
+            camera.name: CameraStatus(time_s=0.0, camera=camera.name, condition="unknown") for camera in setup.cameras
+        }
+        self._faults: dict[str, CameraFault] = {}
+        self._status_topics: dict[str, Topic[CameraStatus]] = {}
         self._grids: Topic[OccupancyGrid] | None = None
+        self._spaces: Topic[ObservedSpace] | None = None
         self._states: Topic[OccupancyState] | None = None
         self._depths: dict[str, Topic[DepthImage]] = {}
 
@@ -61,6 +78,11 @@ class PerceptionDevice:
     def latest(self) -> OccupancyGrid | None:
         """The latest map."""
         return self.map.latest
+
+    @property
+    def camera_statuses(self) -> tuple[CameraStatus, ...]:
+        """The status of each camera."""
+        return tuple(self._statuses.values())
 
     @property
     def stale_reason(self) -> str:
@@ -125,6 +147,8 @@ class PerceptionDevice:
             returned=tuple(name for name in requested if name in names),
             detecting=detecting,
             forget=forget,
+            observed=bool(names) and self._needs_observed_space,
+            faults=self._faults,
         )
 
     def restart_revisions(self) -> None:
@@ -136,15 +160,34 @@ class PerceptionDevice:
         if self._world.lost_reason:
             return
         self.status = DeviceStatus.READY
+        self._take_statuses(seen.statuses)
         if seen.grid is not None:
             self._looks += 1
             self._last = seen
+            self._take_observed(seen.observed)
             grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
             if self.map.arrived(grid, looked_at_s=looked_at_s) and self._grids is not None:
                 self._grids.publish(grid)
         for image in seen.images:
             self._depths[image.camera].publish(image)
         self.detections.take_result(seen.detections)
+
+    def _take_statuses(self, statuses: tuple[CameraStatus, ...]) -> None:
+        """Keep the statuses, publish those that have changed, and notify the users of the map."""
+        for status in statuses:
+            if status == self._statuses[status.camera]:
+                continue
+            if status.unhealthy:
+                _log.warning("camera %s is %s: %s", status.camera, status.condition, status.cause)
+            self._statuses[status.camera] = status
+            if status.camera in self._status_topics:
+                self._status_topics[status.camera].publish(status)
+        self.map.unhealthy = frozenset(status.camera for status in self._statuses.values() if status.unhealthy)
+
+    def _take_observed(self, observed: ObservedSpace | None) -> None:
+        self.observed = observed
+        if observed is not None and self._spaces is not None and self._spaces.subscriber_count > 0:
+            self._spaces.publish(observed)
 
     def fail(self, reason: str) -> None:
         """Report why no images arrive."""
@@ -169,6 +212,7 @@ class PerceptionDevice:
     def recall(self, grips: Mapping[str, GraspCommand]) -> None:
         """Discard the map, as the world was restored to an earlier state."""
         self._forget = True
+        self.observed = None
         self.map.outdated()
 
     def world_lost(self, reason: str) -> None:
@@ -183,11 +227,15 @@ class PerceptionDevice:
         """Publish the list of cameras; map, images and detections are published while they have subscribers."""
         if self.setup.box is not None:
             self._grids = bus.topic("cell/occupancy", OccupancyGrid)
+            self._spaces = bus.topic("cell/observed_space", ObservedSpace)
             self._states = bus.topic("cell/occupancy_state", OccupancyState)
             self._states.provide(self._state)
             self.map.subscribe(self._publish_state)
         self.detections.register(bus)
+        bus.advertise_service(SetCameraFault, self._set_fault, namespace="cell")
         for camera in self.setup.cameras:
+            self._status_topics[camera.name] = bus.topic(f"{camera.name}/status", CameraStatus)
+            self._status_topics[camera.name].publish(self._statuses[camera.name])
             self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
             bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(
                 CameraInfo(
@@ -199,12 +247,27 @@ class PerceptionDevice:
                 )
             )
 
+    async def _set_fault(self, request: SetCameraFault) -> SetCameraFaultResult:
+        """Set the fault of a camera; raises SkillFailed for an unknown camera."""
+        if request.camera not in self._statuses:
+            raise SkillFailed(
+                f"there is no camera {request.camera}",
+                where=self.name,
+                hint=did_you_mean(request.camera, self._statuses),
+            )
+        self._faults = {**self._faults, request.camera: request.fault}
+        return SetCameraFaultResult(camera=request.camera, kind=request.fault.kind)
+
     async def stop(self) -> None:
         """Nothing here moves."""
 
     @property
+    def _needs_observed_space(self) -> bool:
+        return self.setup.observes or (self._spaces is not None and self._spaces.subscriber_count > 0)
+
+    @property
     def _needs_images(self) -> bool:
-        read = self._grids is not None and self._grids.subscriber_count > 0
+        read = any(topic is not None and topic.subscriber_count > 0 for topic in (self._grids, self._spaces))
         return self.map.required > 0 or read or bool(self._requested_depths())
 
     def _requested_depths(self) -> tuple[str, ...]:

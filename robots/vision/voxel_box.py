@@ -19,13 +19,14 @@ _ROUNDING = 1e-6
 
 
 class VoxelBox(msgspec.Struct, frozen=True, kw_only=True):
-    """An axis-aligned box from `corner_m` on, divided into cubes; margins as in the cell document."""
+    """An axis-aligned box from `corner_m` on, divided into cubes; margins and age limit as in the cell document."""
 
     corner_m: Vector3
     voxel_m: float
     shape: tuple[int, int, int]
     robot_margin_m: float
     known_margin_m: float
+    seen_within_s: float = 5.0
 
     @property
     def reach_m(self) -> float:
@@ -68,6 +69,7 @@ def voxel_box(occupancy: OccupancyMap) -> VoxelBox:
         shape=(x, y, z),
         robot_margin_m=occupancy.robot_margin_m,
         known_margin_m=occupancy.known_margin_m,
+        seen_within_s=occupancy.seen_within_s,
     )
 
 

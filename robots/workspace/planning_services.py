@@ -19,6 +19,7 @@ from robots.planning.request import (
     PlanAnswer,
     PlanRequest,
 )
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 from robots.planning.worker.plan_service import PlanService, new_plan_service
 
 _log = logging.getLogger("flexcell.workspace")
@@ -65,6 +66,10 @@ class PlanningServices:
     async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
         """Return the distances of two bodies with an arm at several configurations."""
         return await self._service("watch").pair_distances(request)
+
+    async def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space that an arm passes through; asks the service that planned the trajectory."""
+        return await self._service("plans").swept_space(request)
 
     @property
     def watch_unavailable_reason(self) -> str:

@@ -13,7 +13,7 @@ import msgspec
 from engine.bus import SkillBus, Topic
 from engine.clock import Clock
 from engine.errors import FlexcellError, RobotError, SkillFailed
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import CameraStatus, ObservedSpace, OccupancyGrid
 from engine.robot import DeviceStatus
 from engine.skills.planning_scene import (
     AllowContact,
@@ -34,6 +34,7 @@ from robots.vision.occupancy.occupancy_source import OccupancySource
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
 from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices
+from robots.workspace.unknown_space import UnknownSpaceRule, describe_unhealthy
 
 LOOK_S = 0.05
 """Period of the measurements while there are listeners."""
@@ -62,6 +63,7 @@ class Workspace:
         planners: Plan and check paths.
         clock: The cell's clock.
         occupancy: The occupancy map of the cameras, if the cell has cameras.
+        unknown_space: What the cell demands of space that the cameras have not seen.
     """
 
     name = "cell/workspace"
@@ -73,6 +75,7 @@ class Workspace:
         planners: PlanningServices,
         clock: Clock,
         occupancy: OccupancySource | None = None,
+        unknown_space: UnknownSpaceRule | None = None,
     ) -> None:
         self._make_scene = make_scene
         self._live: LiveScene | None = None
@@ -81,6 +84,7 @@ class Workspace:
         self.planners = planners
         self._clock = clock
         self._occupancy = occupancy
+        self.unknown_space = unknown_space or UnknownSpaceRule()
         self._unsubscribe: Callable[[], None] = _no_operation
         self._topic: Topic[PlanningSceneState] | None = None
         self._watchers: list[ChangeListener] = []
@@ -95,9 +99,35 @@ class Workspace:
         return self._occupancy.latest if self._occupancy is not None else None
 
     @property
+    def observed(self) -> ObservedSpace | None:
+        """When the cameras last saw each voxel; None without cameras."""
+        return self._occupancy.observed if self._occupancy is not None else None
+
+    @property
+    def camera_statuses(self) -> tuple[CameraStatus, ...]:
+        """The status of each camera of the map."""
+        return self._occupancy.camera_statuses if self._occupancy is not None else ()
+
+    @property
     def stale_reason(self) -> str:
         """Why the occupancy is not valid; empty if it is, or without cameras."""
         return self._occupancy.stale_reason if self._occupancy is not None else ""
+
+    @property
+    def unobserved_reason(self) -> str:
+        """Why the scene is not observed: an invalid map, or an unhealthy camera; empty if it is."""
+        if self.stale_reason:
+            return f"the occupancy map is not valid: {self.stale_reason}"
+        return self.unhealthy_reason
+
+    @property
+    def unhealthy_reason(self) -> str:
+        """Which cameras are unhealthy and why; empty if none is."""
+        return describe_unhealthy(self.camera_statuses)
+
+    async def pause(self) -> None:
+        """Return after the period of the measurements."""
+        await self._clock.sleep(LOOK_S)
 
     @property
     def shared(self) -> bool:

@@ -10,7 +10,7 @@ from msgspec import Meta
 from engine.cause_chain import wrap_cause
 from engine.errors import Cause, MeasuredValue
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
-from engine.skills.part_label import PartLabel, part_label
+from engine.skills.part_label import PartLabel, part_label, wrong_part
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
@@ -31,9 +31,11 @@ Margin = Annotated[
 
 
 class Grasp(State, frozen=True, kw_only=True):
-    """Close on a part of `width_m`: `held` when both pads press on it, else `missed`.
+    """Close on a part of `width_m`: `held` when both pads press on it, else `missed`, also when they hold another one.
 
-    Always writes `held`; writes the final opening `width_m` if the gripper measured it.
+    `part` is compared with the body that the pads touch. A gripper that measures none reports `by: width`:
+    something of this width is held. Always writes `held`; writes the final opening `width_m` if the gripper
+    measured it.
     """
 
     state_name: ClassVar[str] = "gripper.Grasp"
@@ -68,10 +70,13 @@ class Grasp(State, frozen=True, kw_only=True):
         if end.status != "succeeded" or end.result is None:
             cause = goal_cause(self._failure(), goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
-        outputs = {"held": end.result.held, "width_m": end.result.width_m}
-        if end.result.held:
+        where = f"{address}/{goal.skill_name()}"
+        wrong = wrong_part(self.part, end.result.part, where=where)
+        held = end.result.held and wrong is None
+        outputs = {"held": held, "width_m": end.result.width_m}
+        if held:
             return Outcome("held", outputs)
-        because = self._missed_cause(end.result, f"{address}/{goal.skill_name()}")
+        because = wrong or self._missed_cause(end.result, where)
         return Outcome("missed", outputs, wrap_cause(self._failure(), because, where=ctx.path, kind=self.state_name))
 
     def cannot_undo(self, done: ActivationRecord) -> str:

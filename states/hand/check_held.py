@@ -7,13 +7,13 @@ from typing import ClassVar
 from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.skills.hand import ReadHand
-from engine.skills.part_label import PartLabel, part_label
+from engine.skills.part_label import PartLabel, part_label, wrong_part
 from engine.state import Context, Outcome, State
 from states.hand.hand_parameter_types import HandName, hand_address
 
 
 class CheckHeld(State, frozen=True, kw_only=True):
-    """Check whether a hand still holds a part."""
+    """Check whether a hand still holds a part; `lost` also when it holds another one."""
 
     state_name: ClassVar[str] = "hand.CheckHeld"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
@@ -28,11 +28,13 @@ class CheckHeld(State, frozen=True, kw_only=True):
         address = hand_address(self.hand)
         request = ReadHand()
         measured = await ctx.call(request, to=address)
-        if measured.held:
+        where = f"{address}/{request.skill_name()}"
+        because = wrong_part(self.part, measured.part, where=where)
+        if measured.held and because is None:
             return Outcome("held")
-        because = Cause(
+        because = because or Cause(
             message=f"the hand is closed to {measured.closed_percent:.0f} % and presses with {measured.force_n:.1f} N",
-            where=f"{address}/{request.skill_name()}",
+            where=where,
         )
         message = f"the hand of {self.hand} lost {part_label(self.part)}"
         return Outcome("lost", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))

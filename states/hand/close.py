@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.skills.hand import HandClose, HandResult
-from engine.skills.part_label import PartLabel, part_label
+from engine.skills.part_label import PartLabel, part_label, wrong_part
 from engine.state import Context, Outcome, State, goal_cause
 from states.hand.hand_parameter_types import ClosingTime, HandName, Percent, hand_address
 
@@ -16,7 +16,8 @@ from states.hand.hand_parameter_types import ClosingTime, HandName, Percent, han
 class Close(State, frozen=True, kw_only=True):
     """Close a hand to `percent` within `time_s`: `held` when thumb or palm and fingers press on a part, else `missed`.
 
-    Always writes `held`; writes the final closing `closed_percent` if the hand measured it.
+    `missed` also when it holds another part than `part`; a hand that cannot name what it touches reports
+    `by: current`. Always writes `held`; writes the final closing `closed_percent` if the hand measured it.
     """
 
     state_name: ClassVar[str] = "hand.Close"
@@ -42,10 +43,13 @@ class Close(State, frozen=True, kw_only=True):
         if end.status != "succeeded" or end.result is None:
             cause = goal_cause(self._failure(), goal, end, to=address, where=ctx.path, kind=self.state_name)
             return Outcome("failed", {"held": False}, cause)
-        outputs = {"held": end.result.held, "closed_percent": end.result.closed_percent}
-        if end.result.held:
+        where = f"{address}/{goal.skill_name()}"
+        wrong = wrong_part(self.part, end.result.part, where=where)
+        held = end.result.held and wrong is None
+        outputs = {"held": held, "closed_percent": end.result.closed_percent}
+        if held:
             return Outcome("held", outputs)
-        because = _missed_cause(end.result, f"{address}/{goal.skill_name()}")
+        because = wrong or _missed_cause(end.result, where)
         return Outcome("missed", outputs, wrap_cause(self._failure(), because, where=ctx.path, kind=self.state_name))
 
     def _failure(self) -> str:

@@ -1,11 +1,11 @@
-"""Intrusions are drawn into the way and outside of the minimum distance, and a motion that does not look out is hit."""
+"""Intrusions are drawn into the path, classed by what avoids a contact, and a motion that does not look out is hit."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from benchmarks.intrusion_drawing import STEP_S, Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_drawing import STEP_S, Avoidability, Intrusion, IntrusionDrawer, UndisturbedMotion
 from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from benchmarks.intrusions import CELL
 from engine.clock import run_virtual
@@ -48,14 +48,19 @@ def test_a_seed_draws_the_same_again_and_another_seed_others(cell: CellModel) ->
     assert _drawn(cell, count=2, seed=1) != first
 
 
-def test_drawn_hands_get_into_the_way_but_not_to_where_the_arm_is_before_it_can_have_stopped(cell: CellModel) -> None:
-    """In the physics: an arm that is put where it would be until then is not touched, one farther on is."""
-    way = _motion()
-    for intrusion in _drawn(cell, count=2):
-        stopped = round((intrusion.noticeable_s + STOPPING_S) / STEP_S)
-        assert not _touched(cell, intrusion, way, until_row=stopped)
-        assert intrusion.after_s < intrusion.noticeable_s < way.duration_s
+def test_drawn_hands_are_classed_by_where_the_arm_can_have_stopped(cell: CellModel) -> None:
+    """In the physics: each is not touched where the arm has stopped in time for its class."""
+    path, seen = _motion(), set[Avoidability]()
+    for intrusion in _drawn(cell, count=8):
+        assert intrusion.after_s < intrusion.noticeable_s
         assert 0.25 <= intrusion.speed_m_s <= 1.2
+        if intrusion.avoidable_by in seen or intrusion.avoidable_by == "nothing":
+            continue
+        assert intrusion.noticeable_s < path.duration_s
+        seen.add(intrusion.avoidable_by)
+        stopped_s = intrusion.noticeable_s + (STOPPING_S if intrusion.avoidable_by == "stopping" else 0.0)
+        assert not _touched(cell, intrusion, path, until_row=int(stopped_s / STEP_S))
+    assert seen == {"stopping", "slower"}
 
 
 def _touched(cell: CellModel, intrusion: Intrusion, way: UndisturbedMotion, *, until_row: int) -> bool:
@@ -87,6 +92,7 @@ def test_the_control_group_drives_into_the_hand() -> None:
         stay_s=None,
         near="arm/magnet_base",
         noticeable_s=0.6,
+        avoidable_by="stopping",
     )
 
     async def main() -> IntrusionResult:
@@ -97,4 +103,6 @@ def test_the_control_group_drives_into_the_hand() -> None:
     ended = run_virtual(main())
     assert ended.contacts > 0
     assert ended.in_motion == ended.contacts
+    assert 0.1 < ended.speed_m_s < 2.5
+    assert ended.greatest_force_n > 0.0
     assert any(own.startswith("visitor/") and other.startswith("arm/") for own, other in ended.pairs)

@@ -15,7 +15,7 @@ import hatch_build
 SOURCES = hatch_build.SOURCE / "src"
 FILES = sorted(p for p in SOURCES.rglob("*.ts*") if not p.name.endswith((".test.ts", ".test.tsx", ".d.ts")))
 IMPORT = re.compile(r"""(?:from|import\()\s*['"](\.[^'"]+)['"]""")
-INITIAL_LIMIT_BYTES = 190_000
+INITIAL_LIMIT_BYTES = 180_000
 # What each floor may stand on, besides itself.
 FLOORS = {
     "document": {"document", "api/types"},

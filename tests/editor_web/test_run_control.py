@@ -15,6 +15,8 @@ from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
 from tests.tiers import nightly
 
 LAPTOP: Size = (1280, 800)
+# WCAG 2.2, 2.5.8: the least size of a target.
+TARGET_PX = 24
 
 
 @contextmanager
@@ -41,6 +43,15 @@ def node(page: Page, path: str) -> Locator:
 def command(page: Page, name: str) -> Locator:
     """A button by its whole name."""
     return page.get_by_role("button", name=name, exact=True)
+
+
+def require_apart(page: Page, left: str, right: str) -> None:
+    """Two buttons beside one another are each as wide as a target must be, and neither is over the other."""
+    first, second = command(page, left).bounding_box(), command(page, right).bounding_box()
+    assert first is not None
+    assert second is not None
+    assert first["x"] + first["width"] <= second["x"]
+    assert min(first["width"], second["width"]) >= TARGET_PX
 
 
 def run_state(page: Page) -> Locator:
@@ -243,6 +254,7 @@ def test_an_operated_run_is_accessible_and_fits(browser: Browser, shop: Workshop
     with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=size, scheme=scheme) as page:
         expect(page.get_by_role("region", name="The run asks")).to_be_visible()
         require_fit(page, *size)
+        require_apart(page, "Stop this run", "Stop the cell")
         if size == PHONE:
             page.get_by_role("tab", name="Graph").click()
         node(page, "root/rest").click()

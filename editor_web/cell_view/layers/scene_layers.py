@@ -10,6 +10,7 @@ from editor_web.cell_view.layers.detections import DetectionLayer
 from editor_web.cell_view.layers.obstacles import ObstacleLayer
 from editor_web.cell_view.layers.occupancy import VoxelLayer
 from editor_web.cell_view.layers.path_view import PathLayer
+from editor_web.cell_view.layers.unknown_space import UnknownSpaceLayer
 from editor_web.cell_view.rendering.canvas import Canvas
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import LayerGroup
@@ -23,6 +24,7 @@ class SceneLayers:
         self._paths = PathLayer(canvas, under=under)
         self._obstacles = ObstacleLayer(canvas, under=under)
         self._voxels = VoxelLayer(canvas, under=under)
+        self._unknown = UnknownSpaceLayer(canvas, under=under)
         self._cameras = CameraLayer(canvas, under=under)
         self._detections = DetectionLayer(canvas, under=under)
 
@@ -35,6 +37,7 @@ class SceneLayers:
         due = (
             self._paths.draw(latest, now_s, is_shown="paths" in shown),
             self._voxels.draw(latest, now_s),
+            self._unknown.draw(latest, now_s),
             self._cameras.draw(latest, now_s),
         )
         return min((each for each in due if each is not None), default=None)

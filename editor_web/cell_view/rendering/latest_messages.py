@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 from engine.messages import FramePoses, RobotDescription, SceneDescription
-from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.messages.sensing import CameraInfo, DepthImage, ObservedSpace, OccupancyGrid, OccupancyState
 from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
@@ -25,6 +25,7 @@ class LatestMessages:
         self.frames: FramePoses | None = None
         self.planning_scene: PlanningSceneState | None = None
         self.occupancy: OccupancyGrid | None = None
+        self.observed_space: ObservedSpace | None = None
         self.descriptions: dict[str, RobotDescription] = {}
         self.paths: dict[str, PathPreview] = {}
         self.blocks: dict[str, JogBlock] = {}
@@ -44,6 +45,8 @@ class LatestMessages:
                 self.planning_scene = message
             case OccupancyGrid():
                 self.occupancy = message
+            case ObservedSpace():
+                self.observed_space = message
             case OccupancyState():
                 self.occupancy_state = message
             case CameraInfo():

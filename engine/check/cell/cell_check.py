@@ -33,6 +33,7 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
         for part in entry.detect.labels if entry.detect is not None else ():
             path: DataPath = ("cameras", camera, "detect", "labels", part)
             findings += _missing(names, "part", part, cell.source.position(path, of_key=True))
+    findings += _check_unknown_space(cell)
     findings += _check_seed(cell, names)
     return tuple(sorted(findings, key=finding_sort_key))
 
@@ -47,6 +48,16 @@ def check_entries_document(entries: Entries, names: CellNames | None = None) -> 
         if names is not None and pose.frame != _PART_FRAME:
             findings += _missing(names, "frame", pose.frame, entries.source.position(("poses", name, "frame")))
     return tuple(sorted(findings, key=finding_sort_key))
+
+
+def _check_unknown_space(cell: Cell) -> Iterator[Finding]:
+    occupancy = cell.document.occupancy
+    if occupancy is None or not cell.document.cameras or occupancy.must_cover or occupancy.unknown_space is not None:
+        return
+    position = cell.source.position(("occupancy",), of_key=True)
+    message = "motions may pass through space that no camera has seen"
+    hint = "name what the cameras must see in `must_cover`, or choose `unknown_space`"
+    yield new_finding("unseen-space-accepted", message, path="", position=position, hint=hint)
 
 
 def _check_driver(cell: Cell, robot: str, entry: RobotSpec) -> Iterator[Finding]:

@@ -1,21 +1,28 @@
-"""`flexcell cell`: connection of the devices of a running server's cell."""
+"""`flexcell cell`: connection of the devices of a running server's cell, and what the cameras of a cell see."""
 
 from __future__ import annotations
 
 import asyncio
+import math
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from engine.cell.camera_coverage import RegionCoverage
 from engine.cell.cell_connection import CellConnection
 from engine.cell.remote_cell import connect_remote_cell, remote_cell_connection
+from engine.cell.robot_models import robot_models
 from engine.cli.exit_code import ExitCode
+from engine.document.cell import load_cell
+from engine.errors import CellError
 from engine.host.state_folder_names import STATE_FOLDER
+from engine.messages import Vector3
 
 app = typer.Typer(
-    help="Show or restore the connection to the devices of a running server's cell.", no_args_is_help=True
+    help="Show or restore the connection to the devices of a running server's cell; show what its cameras see.",
+    no_args_is_help=True,
 )
 
 Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
@@ -35,6 +42,44 @@ def connect(server: Folder = _STATE) -> None:
     `flexcell cell connect`
     """
     _print_connection(asyncio.run(connect_remote_cell(server)))
+
+
+@app.command("coverage")
+def coverage(
+    file: Annotated[Path, typer.Argument(help="Cell document.", show_default=False)],
+    fail_under: Annotated[
+        float, typer.Option(min=0.0, max=100.0, help="Exit code 1 if less than so many percent of a region are seen.")
+    ] = 0.0,
+) -> None:
+    """Print how much of each region of `must_cover` the cameras see, together and alone, with the arms at home.
+
+    `flexcell cell coverage behaviors/cells/irb4600_shared.yaml`
+    """
+    models = robot_models()
+    if models is None:
+        raise CellError("no installed package provides robot models", hint="install flexcell with its robots")
+    found = models.camera_coverage(load_cell(file))
+    for region in (*found.regions, found.whole):
+        sys.stdout.write(f"{_region_line(region)}\n")
+    if any(100.0 * region.seen < fail_under for region in found.regions or (found.whole,)):
+        raise typer.Exit(ExitCode.OTHER_OUTCOME)
+
+
+def _region_line(region: RegionCoverage) -> str:
+    alone = ", ".join(f"{camera} {_percent(share)}" for camera, share in region.by_camera.items())
+    line = f"{region.name}: {_percent(region.seen)} seen ({alone})"
+    if region.unseen_low_m is None or region.unseen_high_m is None:
+        return line
+    return f"{line}, unseen within {_point(region.unseen_low_m)} to {_point(region.unseen_high_m)} m"
+
+
+def _percent(share: float) -> str:
+    # Rounded down: what is printed as 100 % is all of it.
+    return f"{math.floor(1000.0 * share) / 10.0:.1f} %"
+
+
+def _point(values: Vector3) -> str:
+    return f"({', '.join(f'{value:.2f}' for value in values)})"
 
 
 def _print_connection(connection: CellConnection) -> None:

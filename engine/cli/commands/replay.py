@@ -41,7 +41,8 @@ def replay(
 ) -> None:
     """Replay recorded runs in virtual time and without robots: recorded responses replace the devices.
 
-    Exit code 0: every event is the same. 4: the runs differ; the first difference is printed.
+    Exit code 0: every event is the same. 4: the runs differ; the first different event is printed, and so are
+    events that were altered after the run, and parameters whose default is another one in `--behavior`.
     2: a recording or the behavior cannot be used.
     """
     prepare(junit)
@@ -90,9 +91,9 @@ def _lines(name: str, result: ReplayReport | FlexcellError) -> Iterator[str]:
         cut = "" if result.recording.complete else ", up to the end of the truncated recording"
         yield f"{name}: the same, {result.compared} events{cut}"
         return
-    yield f"{name}: differs: {result.difference}"
-    for line in result.difference.before:
-        yield f"  after {line}"
+    for number, difference in enumerate(result.differences):
+        yield f"{name}: {'also ' if number else ''}differs: {difference}"
+        yield from (f"  after {line}" for line in difference.before)
 
 
 def _print_json(names: list[str], results: list[ReplayReport | FlexcellError], *, from_files: bool) -> None:
@@ -113,10 +114,19 @@ def _row(name: str, result: ReplayReport | FlexcellError, *, from_file: bool) ->
         "behavior": description.behavior,
         "events": result.compared,
         "complete": result.recording.complete,
+        "records": _records(result.recording),
         "difference": _difference(result.difference),
+        "differences": [_difference(each) for each in result.differences],
         "duration_s": round(result.duration_s, 6),
         **({"measures": measures} if measures else {}),
     }
+
+
+def _records(recording: Recording) -> str:
+    """Return whether the events are those that the run wrote, in a word."""
+    if recording.altered is None:
+        return "unverified"
+    return "altered" if recording.altered else "verified"
 
 
 def _difference(difference: ReplayDifference | None) -> dict[str, object] | None:
@@ -139,11 +149,10 @@ def _suite(name: str, result: ReplayReport | FlexcellError) -> JunitSuite:
         problem = JunitProblem(kind="error", type="unusable", message=str(result))
         case = JunitCase(name=name, classname="replay", time_s=0.0, problem=problem)
         return JunitSuite(name=name, file=name, cases=(case,))
-    description, difference = result.recording.description, result.difference
+    description = result.recording.description
+    texts = "\n".join(each.explained() for each in result.differences)
     problem = (
-        JunitProblem(kind="failure", type="differs", message=str(difference), text=difference.explained())
-        if difference is not None
-        else None
+        JunitProblem(kind="failure", type="differs", message=str(result.difference), text=texts) if texts else None
     )
     case = JunitCase(name=Path(name).stem, classname=class_name(name), time_s=result.duration_s, problem=problem)
     properties = {

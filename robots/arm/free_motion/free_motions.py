@@ -99,7 +99,8 @@ class FreeMotions:
         if gap.max() > _AT_START_RAD:
             joint = self._runner.model.arm_joints[int(np.argmax(gap))]
             raise GoalRejected(
-                f"the plan does not start at the arm's current joints: {joint} differs by {gap.max():.3f} rad",
+                f"the plan does not start at the arm's current joints: {joint} differs by {gap.max():.3f} rad,"
+                f" at most {_AT_START_RAD:g} rad are allowed",
                 where=handle.address,
                 hint="plan again from the current joints",
             )
@@ -153,6 +154,8 @@ class FreeMotions:
         patient = adaptation.watch and adaptation.patience_s > 0.0
         for _ in range(_TRIES):
             segment = await planner.find(start)
+            if not isinstance(segment, PlanRefusal) and (unhealthy := self._workspace.unhealthy_reason):
+                raise RobotError(unhealthy, hint="put the camera right; its status is on `<camera>/status`")
             if isinstance(segment, PlanRefusal):
                 if planner is first and first is not onward and adaptation.watch:
                     # A given plan that is blocked by now is handled like any other scene change.

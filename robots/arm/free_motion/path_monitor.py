@@ -45,8 +45,7 @@ class PathMonitor:
     @property
     def unobserved_reason(self) -> str:
         """Why the scene is not observed; empty if it is."""
-        stale = self._workspace.stale_reason
-        return f"the occupancy map is not valid: {stale}" if stale else ""
+        return self._workspace.unobserved_reason
 
     async def ahead(self, segment: PathSegment, *, from_s: float) -> PredictedCollision | None:
         """Return the collision on the remaining path that the arm follows; None if it is free."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 
 import msgspec
 
 from engine.errors import RobotError
 from engine.messages import Pose
+from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning import PlanOptions
+from robots.arm.scene_queries.unknown_space_check import UnknownSpaceCheck
 from robots.planning.request import (
     CollisionRequest,
     JointGoal,
@@ -25,6 +28,7 @@ from robots.planning.request import (
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
 from robots.workspace.path_reservations import describe_names
+from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
 
 EXTRA_MARGIN_M = 0.015
@@ -38,6 +42,8 @@ TRANSIENT_REASONS: tuple[RefusalReason, ...] = (
     "way_blocked",
 )
 """Refusals that may not recur without the extra margin, or once the obstacle is gone."""
+
+_log = logging.getLogger("flexcell.arm")
 
 PlanningGoal = JointGoal | PoseGoal | PathGoal
 
@@ -70,19 +76,53 @@ class PathPlanner:
         self._goal = goal
         self._options = options
         self._tool = tool
+        self._unknown_space = UnknownSpaceCheck(arm, workspace)
 
     async def find(self, start: Array, *, attempt: int = 0) -> PathSegment | PlanRefusal:
         """Plan a path from `start` (n,) in the current scene; each attempt uses another seed.
+
+        What becomes of a path through space that no camera has seen is what the cell demands.
 
         Raises:
             RobotError: the planning process has ended.
             CellError: the scene is invalid.
         """
+        found = await self._search(start, attempt)
+        if isinstance(found, PlanRefusal):
+            return found
+        return await self._through_known_space(found, start, attempt)
+
+    async def _search(self, start: Array, attempt: int) -> PathSegment | PlanRefusal:
         options = self._options
         wide = await self._ask(start, options.margin_m + EXTRA_MARGIN_M, options.time_s * _SPARE_SHARE, attempt)
         if not isinstance(wide, PlanRefusal) or wide.reason not in TRANSIENT_REASONS:
             return wide
         return await self._ask(start, options.margin_m, options.time_s * (1.0 - _SPARE_SHARE), attempt)
+
+    async def _through_known_space(self, segment: PathSegment, start: Array, attempt: int) -> PathSegment | PlanRefusal:
+        """Return the path, another one, a slower one, or the refusal of the unknown space on it."""
+        check, workspace, options = self._unknown_space, self._workspace, self._options
+        policy = workspace.unknown_space.policy
+        looks = check.once_observed if policy == "look_first" else check.on
+        swept = await looks(segment.trajectory)
+        if swept is None:
+            return segment
+        if policy == "slow":
+            speed = min(options.speed, SLOW_SPEED)
+            _log.info(
+                "%s moves at %.0f %% of its speed: %s",
+                self.arm,
+                100.0 * speed,
+                check.refusal(swept, segment.trajectory).message,
+            )
+            return await self._ask(start, segment.margin_m, options.time_s, attempt, speed=speed)
+        grid, observed = workspace.occupancy, workspace.observed
+        if grid is not None and observed is not None:
+            known_only = workspace.unknown_space.as_occupied(grid, observed)
+            around = await self._ask(start, segment.margin_m, options.time_s, attempt, occupancy=known_only)
+            if isinstance(around, PathSegment) and await check.on(around.trajectory) is None:
+                return around
+        return check.refusal(swept, segment.trajectory)
 
     async def is_permanently_blocked(self, start: Array) -> bool:
         """Return whether there is no path even without transient obstacles: other arms and the occupancy.
@@ -121,7 +161,15 @@ class PathPlanner:
         return self._options.margin_m
 
     async def _ask(
-        self, start: Array, margin_m: float, time_s: float, attempt: int, *, permanent: bool = False
+        self,
+        start: Array,
+        margin_m: float,
+        time_s: float,
+        attempt: int,
+        *,
+        permanent: bool = False,
+        speed: float | None = None,
+        occupancy: OccupancyGrid | None = None,
     ) -> PathSegment | PlanRefusal:
         options, workspace = self._options, self._workspace
         scene = workspace.scene_for(self.arm)
@@ -137,8 +185,8 @@ class PathPlanner:
                 margin_m=margin_m,
                 keep_orientation=_orientation_constraint(options),
                 tool=self._tool,
-                speed=options.speed,
-                occupancy=None if permanent else workspace.occupancy,
+                speed=options.speed if speed is None else speed,
+                occupancy=None if permanent else occupancy or workspace.occupancy,
             )
         )
         if isinstance(answer, PlanRefusal):

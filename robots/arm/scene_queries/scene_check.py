@@ -30,8 +30,7 @@ class SceneCheck:
     @property
     def unobserved_reason(self) -> str:
         """Why the scene is not observed; empty if it is."""
-        stale = self._workspace.stale_reason
-        return f"the occupancy map is not valid: {stale}" if stale else ""
+        return self._workspace.unobserved_reason
 
     async def check(self, trajectory: JointTrajectory) -> PathCheck:
         """Return where a trajectory is blocked in the current scene.

@@ -13,6 +13,7 @@ from robots.model.transform import RigidTransform
 from robots.port import Array
 
 GRAVITY_M_S2 = 9.81
+_DOWN_M_S2 = (0.0, 0.0, -GRAVITY_M_S2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +29,7 @@ class Payload:
 
 
 class ArmDynamics:
-    """Torques at the arm joints, shapes (n,) and (n, n); the tool's joints are locked at 0.
+    """Torques at the arm joints, shapes (n,) and (n, n), of the nominal model; the tool's joints are locked at 0.
 
     M(q) q̈ + c(q, q̇) + g(q) = τ, with the motors' inertia at the joints in M unless `motors` is
     False. One instance serves one thread at a time.
@@ -37,30 +38,37 @@ class ArmDynamics:
         model: The arm.
         base: Pose of its base link in the world, whose z is up.
         load: The payload.
+        gravity_m_s2: Gravity in the world, (3,).
         motors: Include `RobotModel.armature_kg_m2`.
     """
 
     def __init__(
-        self, model: RobotModel, *, base: RigidTransform | None = None, load: Payload | None = None, motors: bool = True
+        self,
+        model: RobotModel,
+        *,
+        base: RigidTransform | None = None,
+        load: Payload | None = None,
+        motors: bool = True,
+        gravity_m_s2: Array | None = None,
     ) -> None:
         self.model = model
         self._solver = solver = arm_model(model)
-        up = base.rotation.T @ np.array([0.0, 0.0, 1.0]) if base is not None else np.array([0.0, 0.0, 1.0])
-        solver.gravity.linear = -GRAVITY_M_S2 * up
+        gravity = np.array(_DOWN_M_S2) if gravity_m_s2 is None else gravity_m_s2
+        solver.gravity.linear = base.rotation.T @ gravity if base is not None else gravity
         solver.armature = np.array(model.armature_kg_m2) if motors else np.zeros(model.dof)
         if load is not None:
             _carry(solver, model.tool_link, load)
         self._data = solver.createData()
-        self._rest = np.zeros(model.dof)
+        self.damping_nms_rad: Array = np.array(solver.damping)
+        """Dampers at the joints, (n,), as described in the URDF; not in `bias`."""
 
     def mass_matrix(self, joints: Array) -> Array:
         """Return M(q), symmetric, in kg m²."""
-        upper = np.triu(pin.crba(self._solver, self._data, joints))
-        return upper + np.triu(upper, 1).T
+        return pin.crba(self._solver, self._data, joints)
 
     def bias(self, joints: Array, velocity: Array) -> Array:
         """Return c(q, q̇) + g(q): the torque for constant velocity, in N m."""
-        return pin.nonLinearEffects(self._solver, self._data, joints, velocity).copy()
+        return pin.nonLinearEffects(self._solver, self._data, joints, velocity)
 
     def gravity(self, joints: Array) -> Array:
         """Return g(q), in N m."""

@@ -48,7 +48,8 @@ def check_endpoints(request: PlanRequest, checker: ExactChecker, problem: Compil
         )
     escape = EscapeChecker(checker, start)
     if escape.in_collision(start):
-        return _start_collision(escape.colliding_pairs(start), hint="guide the arm away by hand, or allow this contact")
+        touching = describe_collision(checker, start, pairs := escape.colliding_pairs(start))
+        return _start_collision(touching, pairs, hint="guide the arm away by hand, or allow this contact")
     if request.keep_orientation is not None:
         problem = with_upright_tool(problem, start, request.keep_orientation)
     goals = _goals(request, checker, problem, start)
@@ -59,17 +60,16 @@ def check_endpoints(request: PlanRequest, checker: ExactChecker, problem: Compil
         outside_start = escape_configuration(checker, problem, start, goals, seed=request.seed)
         if outside_start is None:
             pairs = checker.colliding_pairs(start)
+            near = describe_collision(checker, start, pairs)
             return _start_collision(
-                pairs, hint=f"no path leaves the margin of {request.margin_m:g} m; reduce the margin"
+                near, pairs, hint=f"no path leaves the margin of {request.margin_m:g} m; reduce the margin"
             )
         lead, start = start[None], outside_start
     return Endpoints(lead=lead, start=start, goals=goals, problem=with_room_for(problem, np.vstack((start, goals))))
 
 
-def _start_collision(pairs: tuple[NamePair, ...], *, hint: str) -> PlanRefusal:
-    return PlanRefusal(
-        reason="start_in_collision", message=f"at the start {describe_touching(pairs)}", hint=hint, pairs=pairs
-    )
+def _start_collision(what: str, pairs: tuple[NamePair, ...], *, hint: str) -> PlanRefusal:
+    return PlanRefusal(reason="start_in_collision", message=f"at the start {what}", hint=hint, pairs=pairs)
 
 
 def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array) -> Array | PlanRefusal:
@@ -78,6 +78,7 @@ def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem
         return candidates
     free: list[Array] = []
     pairs: tuple[NamePair, ...] = ()
+    what = ""
     tilt = np.inf
     for joints in candidates[np.argsort(np.abs(candidates - start).max(axis=1), kind="stable")]:
         if problem.orientation != FREE:
@@ -91,14 +92,17 @@ def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem
                 break
         elif not pairs:
             pairs = checker.colliding_pairs(joints)
+            what = describe_collision(checker, joints, pairs)
     if free:
         return np.array(free)
     if pairs:
         return PlanRefusal(
             reason="goal_in_collision",
-            message=f"at the goal {describe_touching(pairs)}"
+            message=f"at the goal {what}"
             + (f" (and {len(candidates) - 1} more goals in collision)" if len(candidates) > 1 else ""),
-            hint="choose another goal, or allow this contact",
+            hint="choose another goal, allow this contact, or reduce the margin"
+            if request.margin_m > 0.0
+            else "choose another goal, or allow this contact",
             pairs=pairs,
         )
     return PlanRefusal(
@@ -184,5 +188,20 @@ def validate_joints(joints_rad: tuple[float, ...], checker: ExactChecker) -> Arr
 
 def describe_touching(pairs: tuple[NamePair, ...]) -> str:
     """Return a text on the touching pairs, naming the first three."""
-    shown = ", ".join(f"{a} touches {b}" for a, b in pairs[:3])
-    return shown + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")
+    return _listed([f"{a} touches {b}" for a, b in pairs[:3]], len(pairs))
+
+
+def describe_collision(checker: ExactChecker, joints: Array, pairs: tuple[NamePair, ...]) -> str:
+    """Return a text on colliding pairs at `joints` (n,); of what is only within the margin, distance and margin."""
+    if checker.margin_m <= 0.0:
+        return describe_touching(pairs)
+    lines: list[str] = []
+    for a, b in pairs[:3]:
+        apart_m = -checker.depth(joints, frozenset((a, b)))
+        near = f"is {apart_m * 1e3:.1f} mm from {b}, nearer than the margin of {checker.margin_m * 1e3:g} mm"
+        lines.append(f"{a} {near}" if apart_m > 0.0 else f"{a} touches {b}")
+    return _listed(lines, len(pairs))
+
+
+def _listed(lines: list[str], count: int) -> str:
+    return ", ".join(lines) + (f" and {count - len(lines)} more" if count > len(lines) else "")

@@ -10,7 +10,7 @@ from engine.errors import CellError
 from robots.planning.request import PathGoal, PlanRefusal, PlanRequest
 from robots.planning.scene.compiled_problem import CompiledProblem
 from robots.planning.scene.exact_checker import ExactChecker
-from robots.planning.search.endpoints import Endpoints, describe_touching, outside_limits, with_upright_tool
+from robots.planning.search.endpoints import Endpoints, describe_collision, outside_limits, with_upright_tool
 from robots.planning.search.escape import EscapeChecker
 from robots.planning.search.fast_search import is_tilted
 from robots.port import Array
@@ -48,7 +48,7 @@ def validate_path(
         where = "at the start" if at_start else f"at {hit.share:.0%} of the segment from waypoint {hit.segment}"
         return PlanRefusal(
             reason="start_in_collision" if at_start else "way_blocked",
-            message=f"{where} {describe_touching(hit.pairs)}",
+            message=f"{where} {describe_collision(checker, hit.joints, hit.pairs)}",
             hint="plan another path, or remove the obstacle",
             pairs=hit.pairs,
         )

@@ -65,7 +65,7 @@ def time_waypoints(
     stops = list(pairwise(stops_of(cuts)))
     sections = tuple(blend_corners(waypoints[first : last + 1], cuts[first : last + 1]) for first, last in stops)
     allowed = rate_limits(limits, speed)
-    laws = tuple(_law(section, allowed, tool_position, speed_m_s) for section in sections)
+    laws = tuple(_law(section, allowed, tool_position, speed, speed_m_s) for section in sections)
     # The half blends before and after a corner are as long as the lines that they replace.
     corners = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(waypoints, axis=0), axis=1)))
     passed, begin_s = np.zeros(len(waypoints)), 0.0
@@ -74,7 +74,7 @@ def time_waypoints(
         begin_s += law.duration_s
         passed[last] = begin_s
     if begin_s > _LONGEST_S:
-        raise _too_long(begin_s)
+        raise _too_long(begin_s, speed, speed_m_s)
     return TimedWaypoints(
         trajectory=concatenate(sections, laws), passed_s=tuple(float(passed[index]) for index in index_of[1:])
     )
@@ -85,12 +85,13 @@ def _require_duration(path: Array, limits: JointLimits, speed: float) -> None:
     turns = np.abs(np.diff(path, axis=0)) / (np.array(limits.velocity_rad_s) * speed)
     least_s = float(turns.max(axis=1).sum())
     if not least_s <= _LONGEST_S:
-        raise _too_long(least_s)
+        raise _too_long(least_s, speed, None)
 
 
-def _too_long(duration_s: float) -> RobotError:
+def _too_long(duration_s: float, speed: float, speed_m_s: float | None) -> RobotError:
+    asked = f"a tool speed of {speed_m_s:g} m/s" if speed_m_s is not None else f"{speed:g} of the joint speeds"
     hint = f"the longest takes {_LONGEST_S:g} s: move faster, or divide it"
-    return RobotError(f"the motion would take {duration_s:.0f} s", hint=hint)
+    return RobotError(f"the motion would take {duration_s:.0f} s with {asked}", hint=hint)
 
 
 def _distinct(path: Array, blends_m: Sequence[float]) -> tuple[list[int], Array, list[float]]:
@@ -138,7 +139,7 @@ def _longest_within(longest: float, distance_m: Callable[[float], float], most_m
 
 
 def _law(
-    path: BlendedPath, allowed: JointRateLimits, tool_position: ToolPosition, speed_m_s: float | None
+    path: BlendedPath, allowed: JointRateLimits, tool_position: ToolPosition, speed: float, speed_m_s: float | None
 ) -> TimeParameterization:
     """Return the time law of a section within the limits of the joints and of the tool's speed."""
     if speed_m_s is None:
@@ -147,7 +148,7 @@ def _law(
     steps_m = np.linalg.norm(np.diff(tool, axis=0), axis=1)
     least_s = float(steps_m.sum()) / speed_m_s
     if not least_s <= _LONGEST_S:
-        raise _too_long(least_s)
+        raise _too_long(least_s, speed, speed_m_s)
     rates = steps_m / np.diff(path.along)
     fastest = np.maximum(np.append(rates, 0.0), np.append(0.0, rates))
     most = (speed_m_s * _TOOL_SPEED_SHARE / np.maximum(fastest, _SLOWEST_RATE)) ** 2

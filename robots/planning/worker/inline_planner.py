@@ -16,6 +16,7 @@ from robots.planning.request import (
     PlanAnswer,
     PlanRequest,
 )
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 from robots.planning.worker.scene_planner import ScenePlanner
 
 INLINE_CHECK_S = 2e-5
@@ -74,6 +75,12 @@ class InlinePlanner:
     async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
         """Return the distances of two bodies with an arm at several configurations. Raises CellError."""
         result = self._planner.pair_distances(request)
+        await self._pass(LOOK_FIXED_S)
+        return result
+
+    async def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space on a trajectory. Raises CellError."""
+        result = self._planner.swept_space(request)
         await self._pass(LOOK_FIXED_S)
         return result
 

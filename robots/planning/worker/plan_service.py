@@ -16,6 +16,7 @@ from robots.planning.request import (
     PlanAnswer,
     PlanRequest,
 )
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 
 
 class PlanService(Protocol):
@@ -61,6 +62,10 @@ class PlanService(Protocol):
 
     async def pair_distances(self, request: PairDistanceRequest) -> PairDistances:
         """Return the distances of two bodies with an arm at several configurations."""
+        ...
+
+    async def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space that an arm passes through along a trajectory."""
         ...
 
 

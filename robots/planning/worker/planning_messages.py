@@ -17,6 +17,7 @@ from robots.planning.request import (
     PlanRefusal,
     PlanRequest,
 )
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 
 
 class WarmUpRequest(msgspec.Struct, frozen=True, kw_only=True, tag="warm_up"):
@@ -38,7 +39,15 @@ class CollisionReply(msgspec.Struct, frozen=True, kw_only=True, tag="collisions"
 
 
 PlanningRequest = (
-    WarmUpRequest | PlanRequest | PathCheckRequest | AttachedPartCheckRequest | CollisionRequest | PairDistanceRequest
+    WarmUpRequest
+    | PlanRequest
+    | PathCheckRequest
+    | AttachedPartCheckRequest
+    | CollisionRequest
+    | PairDistanceRequest
+    | SweptSpaceRequest
 )
 ToPlanner = PlanningRequest | CancelRequest
-FromPlanner = PlannerReady | PathPlan | PlanRefusal | PathCheck | CollisionReply | PairDistances | RequestFailure
+FromPlanner = (
+    PlannerReady | PathPlan | PlanRefusal | PathCheck | CollisionReply | PairDistances | SweptSpace | RequestFailure
+)

@@ -20,6 +20,7 @@ from robots.planning.request import (
     PlanRefusal,
     PlanRequest,
 )
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 from robots.planning.worker.planning_messages import (
     CancelRequest,
     CollisionReply,
@@ -116,6 +117,12 @@ class PlanningWorker:
         """Return the distances of two bodies with an arm at several configurations. Raises as `plan` does."""
         answer = await self._answer(request, _LOOK_S)
         assert isinstance(answer, PairDistances)
+        return answer
+
+    async def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space on a trajectory. Raises as `plan` does."""
+        answer = await self._answer(request, _LOOK_S)
+        assert isinstance(answer, SweptSpace)
         return answer
 
     async def _path_check(self, request: PathCheckRequest | AttachedPartCheckRequest) -> PathCheck:

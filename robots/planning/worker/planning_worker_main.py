@@ -8,9 +8,12 @@ import sys
 from collections import deque
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from engine.errors import FlexcellError
 from engine.host.child_process import set_parent_death_signal
 from engine.messages import Pose
+from engine.messages.sensing import NEVER_SEEN, ObservedSpace
 from engine.messages.shapes import Box, Obstacle
 from robots.io.message_socket import MessageSocket, PeerGone
 from robots.io.request_failure import RequestFailure
@@ -23,6 +26,7 @@ from robots.planning.request import (
     PlanRequest,
 )
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
+from robots.planning.swept_space import SweptSpaceRequest
 from robots.planning.worker.planning_messages import (
     CancelRequest,
     CollisionReply,
@@ -33,6 +37,7 @@ from robots.planning.worker.planning_messages import (
     WarmUpRequest,
 )
 from robots.planning.worker.scene_planner import ScenePlanner
+from robots.port import JointTrajectory
 from robots.scene.sim_scene import ArmPlacement
 
 
@@ -121,6 +126,8 @@ def _answer(planner: ScenePlanner, request: PlanningRequest, is_canceled: Callab
             return CollisionReply(report=planner.look(request))
         case PairDistanceRequest():
             return planner.pair_distances(request)
+        case SweptSpaceRequest():
+            return planner.swept_space(request)
 
 
 def warm_up(planner: ScenePlanner) -> None:
@@ -129,6 +136,11 @@ def warm_up(planner: ScenePlanner) -> None:
     far = Obstacle.of("far", Box(size_m=(0.1, 0.1, 0.1)), Pose(xyz=(5.0, 0.0, 0.0)))
     scene = PlanningScene(arms=(SceneArm(placement=placement),), obstacles=(far,))
     goal = JointGoal(joints_rad=((1.0, 0.0),))
+    still = JointTrajectory(dt_s=0.1, position_rad=np.zeros((2, 2)), velocity_rad_s=np.zeros((2, 2)))
+    unseen = ObservedSpace(
+        time_s=0.0, corner_m=(0.0, 0.0, 0.0), voxel_m=0.1, shape=(1, 1, 1), limit_s=1.0, ages=bytes((NEVER_SEEN,))
+    )
+    planner.swept_space(SweptSpaceRequest(scene=scene, arm="arm", trajectory=still, observed=unseen))
     for name in ("fast", "RRTConnect"):
         planner.plan(
             PlanRequest(scene=scene, arm="arm", start_rad=(0.5, 0.0), goal=goal, speed=1.0, planner=name, time_s=60.0)

@@ -51,6 +51,8 @@ from robots.planning.search.path_validation import validate_path
 from robots.planning.search.problem_compiler import ProblemNames, compile_problem, voxels_alone, with_voxels
 from robots.planning.search.search_task import SearchAlgorithm, SearchBudget, SearchTask
 from robots.planning.search.stomp import stomp_search
+from robots.planning.search.swept_voxels import swept_space
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 from robots.planning.timing.trajectory_timing import time_path
 from robots.port import Array, JointTrajectory
 from robots.scene.sim_scene import ArmPlacement
@@ -172,6 +174,10 @@ class ScenePlanner:
             distance_m=tuple(-checker.depth(row, frozenset(request.pair)) for row in rows),
             touches_another=tuple(not first.issuperset(checker.colliding_pairs(row)) for row in rows),
         )
+
+    def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space on a trajectory; raises as `check_path` does."""
+        return swept_space(request, self.prepared(request.scene, request.arm).problem)
 
     def prepared(
         self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0, occupancy: OccupancyGrid | None = None
@@ -354,10 +360,15 @@ class _Attempt:
         if self._budget.cancelled:
             return PlanRefusal(reason="cancelled", message="the plan request was canceled")
         effort = f"{self._budget.checks} configurations checked, {self._refused} paths rejected by the exact check"
+        request = self._request
+        asked = f" with a margin of {request.margin_m * 1e3:g} mm" if request.margin_m > 0.0 else ""
+        if request.keep_orientation is not None:
+            asked += f", the tool turned by at most {request.keep_orientation.tolerance_rad:g} rad"
         return PlanRefusal(
             reason="no_path_in_time",
-            message=f"{self._request.planner} found no path within {self._request.time_s:g} s ({effort})",
-            hint="allow more time, choose another planner, or remove obstacles",
+            message=f"{request.planner} found no path within {request.time_s:g} s{asked} ({effort})",
+            hint="allow more time, choose another planner, or remove obstacles"
+            + (", or ask for less" if asked else ""),
         )
 
 

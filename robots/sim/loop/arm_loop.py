@@ -28,6 +28,7 @@ from robots.sim.commands.arm_commands import (
     StartStream,
     TrackForce,
 )
+from robots.sim.loop.arm_hardware import ArmHardware
 from robots.sim.measures.run_measures import LoopArm
 from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
@@ -48,11 +49,12 @@ class SimArmLoop:
         base: RigidTransform,
         physics: Physics,
         contacts: ContactReader,
-        inertia_kg_m2: Array,
+        hardware: ArmHardware,
     ) -> None:
         model = indices.model
         self.indices = indices
         self._physics = physics
+        self._hardware = hardware
         self._acceleration_rad_s2 = np.array(model.limits.acceleration_rad_s2)
         self._jerk_rad_s3 = np.array(model.limits.jerk_rad_s3)
         self._tool_link = physics.body_number(f"{indices.name}/{model.tool_link}")
@@ -61,7 +63,6 @@ class SimArmLoop:
         self.control = ArmControlLoop(
             name=indices.name,
             kinematics=ArmKinematics(model, base=base),
-            inertia_kg_m2=inertia_kg_m2[indices.dof],
             gravity_m_s2=physics.gravity_m_s2,
             touching=lambda: contacts.describe(indices),
         )
@@ -110,27 +111,31 @@ class SimArmLoop:
             case RecoverArm():
                 control.recover()
 
-    def move(self, step_s: float) -> list[AnyMotionEvent]:
+    def measured_joints(self, step: int) -> tuple[Array, Array]:
+        """Return the measured joint positions and velocities, (n,), before this step."""
+        physics, indices = self._physics, self.indices
+        return self._hardware.joints(physics.positions[indices.qpos], physics.velocities[indices.dof], step=step)
+
+    def measured_effort(self, step: int) -> Array:
+        """Return the measured motor torques, (n,), before this step."""
+        return self._hardware.effort(self._physics.motors[self.indices.motor], step=step)
+
+    def move(self, step_s: float, *, step: int) -> list[AnyMotionEvent]:
         """Read the measurements, advance the set point, and return the events."""
-        physics, indices, control = self._physics, self.indices, self.control
+        physics, control = self._physics, self.control
         self._tool_xyz = physics.point_of(self._tool_link, control.tool_xyz_m)
-        control.measure(
-            physics.positions[indices.qpos],
-            physics.velocities[indices.dof],
-            pull_nm=physics.pull[indices.dof],
-            wrench=physics.wrench_on(self._beyond_flange, self._tool_xyz),
-            step_s=step_s,
-        )
+        position, velocity = self.measured_joints(step)
+        wrench = self._hardware.wrench(physics.wrench_on(self._beyond_flange, self._tool_xyz), step=step)
+        control.measure(position, velocity, wrench=wrench, step_s=step_s)
         return control.advance(step_s)
 
-    def drive(self, inertia_torque: Array, *, step_s: float) -> None:
-        """Set the motors; `inertia_torque` (nv,) accelerates all arms along their set points."""
-        physics, dof = self._physics, self.indices.dof
-        feedforward = physics.bias[dof] + inertia_torque[dof]
-        physics.motors[self.indices.motor] = self.control.torque(feedforward, step_s=step_s)
+    def drive(self, *, step_s: float) -> None:
+        """Set the motors."""
+        self._physics.motors[self.indices.motor] = self._hardware.drive(self.control.torque(step_s=step_s))
 
     def rest_near(self, set_point: Array, *, reflex: bool) -> None:
         """Hold `set_point`, clipped to the neighbourhood of the measured position."""
+        self._hardware.forget()
         measured = self._physics.positions[self.indices.qpos]
         near = np.clip(set_point, measured - _NEAR_RAD, measured + _NEAR_RAD)
         self.control.initialize(near, reflex=reflex)

@@ -9,6 +9,7 @@ from robots.control.motion_event import AnyMotionEvent
 from robots.control.motion_executor import MotionExecutor
 from robots.model.transform import RigidTransform
 from robots.port import Array
+from robots.scene.realism import realism
 from robots.sim.commands.arm_commands import CommandToArm
 from robots.sim.commands.world_commands import (
     AnyCommand,
@@ -25,6 +26,7 @@ from robots.sim.commands.world_commands import (
 )
 from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
+from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.external_pushes import ExternalPushes
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
@@ -52,17 +54,23 @@ class Simulation:
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
-        self._ctrl = physics.motors
-        self._target_acceleration = np.zeros(physics.dof_count)
-        self._inertia_torque = np.zeros(physics.dof_count)
         self._start_poses = self._qpos[cell.part_qpos].copy()
         self._set_home()
         self._contacts = ContactReader(cell, physics)
-        inertia = physics.inertia_diagonal()
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
         self._arms = {
             arm.name: SimArmLoop(
-                arm, base=bases[arm.name], physics=physics, contacts=self._contacts, inertia_kg_m2=inertia
+                arm,
+                base=bases[arm.name],
+                physics=physics,
+                contacts=self._contacts,
+                hardware=arm_hardware(
+                    arm.name,
+                    limits=arm.model.limits,
+                    realism=realism(cell.scene.realism),
+                    seed=cell.scene.seed,
+                    step_s=self.step_s,
+                ),
             )
             for arm in cell.arms
         }
@@ -151,17 +159,9 @@ class Simulation:
         self._physics.start_step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
-        accelerated = False
         for arm in self._arms.values():
-            events.extend(arm.move(self.step_s))
-            self._target_acceleration[arm.indices.dof] = arm.control.motion.acceleration
-            accelerated |= arm.control.motion.number != 0
-        if accelerated:
-            self._physics.inertia_times(self._target_acceleration, out=self._inertia_torque)
-        else:
-            self._inertia_torque[:] = 0.0
-        for arm in self._arms.values():
-            arm.drive(self._inertia_torque, step_s=self.step_s)
+            events.extend(arm.move(self.step_s, step=self.steps))
+            arm.drive(step_s=self.step_s)
         self._hands.step(self.step_s)
         self._physics.finish_step()
         self._people.count()
@@ -225,15 +225,14 @@ class Simulation:
         return (*(a.control.motion for a in self._arms.values()), *(t.drive for t in self._tools.values()))
 
     def _write_arm(self, values: Array, fields: ArmFields, arm: SimArmLoop) -> None:
-        control, indices = arm.control, arm.indices
+        control = arm.control
         values[fields.number] = control.motion.number
         values[fields.progress] = control.motion.progress
         values[fields.reflex] = control.reflex
         values[fields.wrench] = control.state.wrench
         block = values[fields.joints].reshape(5, fields.dof)
-        block[0] = self._qpos[indices.qpos]
-        block[1] = self._qvel[indices.dof]
-        block[2] = self._ctrl[indices.motor]
+        block[0], block[1] = arm.measured_joints(self.steps)
+        block[2] = arm.measured_effort(self.steps)
         block[3] = control.motion.position
         block[4] = control.state.external_nm
 

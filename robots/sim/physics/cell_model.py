@@ -16,6 +16,7 @@ from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
+from robots.sim.physics.plant_errors import PlantErrors
 from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF, ToolIndices, tool_body
 
 Indices = NDArray[np.intp]
@@ -66,14 +67,14 @@ def build_cell(scene: SimScene) -> CellModel:
     Raises:
         CellError: a robot model is unknown, a shape is invalid, or MuJoCo rejects the result.
     """
-    spec = _empty_world(scene)
-    for fixture in scene.fixtures:
+    spec, errors = _empty_world(scene), PlantErrors(scene)
+    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         _add_fixture(spec, fixture)
-    for part in scene.parts:
-        _add_part(spec, part)
+    for part in (*scene.parts, *scene.unknown_parts):
+        _add_part(spec, part, errors)
     models = {arm.name: arm.robot() for arm in scene.arms}
     for arm in scene.arms:
-        _add_arm(spec, arm, models[arm.name], scene.fixtures)
+        _add_arm(spec, arm, models[arm.name], scene.fixtures, errors)
     _add_people(spec, scene)
     try:
         compiled = spec.compile()
@@ -83,6 +84,8 @@ def build_cell(scene: SimScene) -> CellModel:
     arms = tuple(_arm_indices(compiled, arm.name, models[arm.name], ferrous=ferrous) for arm in scene.arms)
     frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
     frames += tuple(body for person in scene.people for body in body_names(person.name))
+    # Frames are drawn; only `parts` are known by name.
+    frames += tuple(part.name for part in scene.unknown_parts)
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -153,12 +156,12 @@ def tray_boxes(
     )
 
 
-def _add_part(spec: Any, part: PartBody) -> None:
+def _add_part(spec: Any, part: PartBody, errors: PlantErrors) -> None:
     body = spec.worldbody.add_body(name=part.name, pos=list(part.pose.xyz), quat=_wxyz(part.pose))
     body.add_freejoint(name=part.name)
     # Rolling friction (condim 6) keeps round parts where they are placed.
     geom = _add_shape(body, part.name, part.shape, part.size_m, condim=3 if part.shape == "box" else 6)
-    geom.mass = part.mass_kg
+    geom.mass = errors.mass_kg(part)
     if part.friction is not None:
         # What counts instead of the parameters of a pad is as stiff, and resists torsion, too.
         geom.priority, geom.condim = _SLIPPERY_PRIORITY, max(int(geom.condim), 4)
@@ -184,9 +187,13 @@ def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, c
     return body.add_geom(name=name, type=kind, size=size, condim=condim)
 
 
-def _add_arm(spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[FixtureBody, ...]) -> None:
-    frame = spec.worldbody.add_frame(pos=list(arm.base.xyz), quat=_wxyz(arm.base))
-    spec.attach(arm_spec(model), frame=frame, prefix=f"{arm.name}/")
+def _add_arm(
+    spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[FixtureBody, ...], errors: PlantErrors
+) -> None:
+    base, arm_only = errors.base(arm), arm_spec(model)
+    errors.apply(arm_only, model, name=arm.name)
+    frame = spec.worldbody.add_frame(pos=list(base.xyz), quat=_wxyz(base))
+    spec.attach(arm_only, frame=frame, prefix=f"{arm.name}/")
     # The shape of the first moving link overlaps the fixture under the base.
     shoulder = spec.joint(f"{arm.name}/{model.arm_joints[0]}").parent.name
     for fixture in fixtures:
@@ -198,7 +205,7 @@ def _add_people(spec: Any, scene: SimScene) -> None:
         return
     for person in scene.people:
         add_person(spec, person)
-    let_people_touch(spec, scene.fixtures)
+    let_people_touch(spec, (*scene.fixtures, *scene.unknown_fixtures))
 
 
 def _links(model: Any, arm: str) -> list[str]:

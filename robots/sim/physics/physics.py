@@ -25,10 +25,8 @@ _FAR_M = 100.0
 class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
 
-    Shapes: `positions` (nq,), `velocities`, `bias`, `pull` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
-    `bias` is gravity and Coriolis force at the state read by `start_step`. `pull` is the torque in the last
-    step besides motors, bias and joint dampers: the external torque,
-    as measured by joint torque sensors and a model of the arm.
+    Shapes: `positions` (nq,), `velocities`, `bias` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
+    `bias` is gravity and Coriolis force at the state read by `start_step`; the controllers of arms do not know it.
 
     `geom_centres` (n, 3) and `geom_rotations` (n, 9), row by row, are the poses of the geometries at the start of the
     last step, and `geom_radii` (n,) the radii of the spheres around their centres that contain them.
@@ -49,11 +47,7 @@ class Physics:
         self.velocities: Array = self._data.qvel
         self.motors: Array = self._data.ctrl
         self.bias: Array = self._data.qfrc_bias
-        self.pull: Array = np.zeros(self.dof_count)
         self.gravity_m_s2: Array = model.opt.gravity.copy()
-        self._motor_torque: Array = self._data.qfrc_actuator
-        self._passive: Array = self._data.qfrc_passive
-        self._change: Array = np.zeros(self.dof_count)
         self._xpos: Array = self._data.xpos
         self._xquat: Array = self._data.xquat
         self._rotations: Array = self._data.xmat.reshape(-1, 3, 3)
@@ -75,19 +69,12 @@ class Physics:
         self._attractions.clear()
 
     def finish_step(self) -> None:
-        """Apply motors and external pushes, integrate over one step, and compute `pull` and the wrenches."""
-        np.negative(self.velocities, out=self._change)
+        """Apply motors and external pushes, integrate over one step, and compute the wrenches."""
         pushes = self._pushes
         before = {body: pushes[body].copy() for body in self._attractions}
         for body, attraction in self._attractions.items():
             pushes[body] += attraction
         self._step2(self._model, self._data)
-        self._change += self.velocities
-        self._change /= self.step_s
-        mujoco.mj_mulM(self._model, self._data, self.pull, self._change)
-        self.pull += self.bias
-        self.pull -= self._passive
-        self.pull -= self._motor_torque
         mujoco.mj_rnePostConstraint(self._model, self._data)
         for body, push in before.items():
             pushes[body] = push
@@ -119,16 +106,6 @@ class Physics:
         centre = self._tree_centres[self._roots[bodies[0]]]
         force = sums[3:]
         return np.concatenate((force, sums[:3] + cross(centre - point, force)))
-
-    def inertia_times(self, acceleration: Array, *, out: Array) -> None:
-        """Write the forces that would accelerate by `acceleration`, both (nv,)."""
-        mujoco.mj_mulM(self._model, self._data, out, acceleration)
-
-    def inertia_diagonal(self) -> Array:
-        """Return the diagonal of the mass matrix, (nv,)."""
-        full = np.zeros((self.dof_count, self.dof_count))
-        mujoco.mj_fullM(self._model, self._data, full)
-        return np.diag(full).copy()
 
     def contact_pairs(self) -> list[tuple[int, int]]:
         """Return the two geometries of each contact of the last step."""
@@ -228,7 +205,6 @@ class Physics:
         mujoco.mj_setState(self._model, self._data, state, self._state_kind)
         self.velocities[:] = 0.0
         self._pushes[:] = 0.0
-        self.pull[:] = 0.0
         self.refresh()
 
     def state_hash(self) -> str:

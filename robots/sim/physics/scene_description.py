@@ -1,4 +1,4 @@
-"""The drawing of a cell: the drawable bodies of its arms, fixtures, parts and people."""
+"""The drawing of a cell: the drawable bodies of its arms, fixtures, parts, people and unknown bodies."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescri
         for arm in scene.arms
         for index, visual in enumerate(link_visuals(arm.robot(), cache=cache))
     ]
-    for fixture in scene.fixtures:
+    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         geometries += _fixture(fixture)
-    geometries += [_part(part) for part in scene.parts]
+    geometries += [_part(part) for part in (*scene.parts, *scene.unknown_parts)]
     geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
     return SceneDescription(geometries=tuple(geometries))
 

@@ -266,7 +266,7 @@ class SimWorld:
             bus,
             self._host,
             lambda: describe_scene(self._scene, cache=self._cache),
-            joint_maps={placement.name: placement.robot().joint_map for placement in self._scene.arms},
+            scene=self._scene,
         )
         self._bus = bus
         bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)

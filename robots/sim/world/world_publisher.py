@@ -5,11 +5,12 @@ Latest values are computed on demand, streams only while they have subscribers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from engine.bus import SkillBus
-from engine.messages import FramePoses, PartPoses, Pose, SceneDescription
-from robots.model.joint_map import JointMap
+from engine.messages import FramePoses, PartPoses, Pose, SceneDescription, Vector3
+from robots.scene.sim_scene import SimScene
+from robots.scene.up_axis import up_axis
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.world.arm_topics import arm_topics
@@ -17,6 +18,8 @@ from robots.sim.world.tool_topics import tool_topic
 
 FRAME_RATE_HZ = 30.0
 JOINT_RATE_HZ = 100.0
+_USUALLY_UP: Vector3 = (0.0, 0.0, 1.0)
+"""The axis of parts that `PartPoses` does not list."""
 
 
 class WorldPublisher:
@@ -28,9 +31,11 @@ class WorldPublisher:
         host: WorldHost,
         describe: Callable[[], SceneDescription],
         *,
-        joint_maps: Mapping[str, JointMap],
+        scene: SimScene,
     ) -> None:
         self._host = host
+        self._up = {part.name: axis for part in scene.parts if (axis := up_axis(part)) != _USUALLY_UP}
+        joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
         summary = host.summary
         self._frames = summary.frames
         self._parts = frozenset(summary.parts)
@@ -82,4 +87,4 @@ class WorldPublisher:
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
         xyz, xyzw = snapshot.frames()
         poses = {name: Pose(xyz=xyz[row], xyzw=xyzw[row]) for row, name in self._part_rows}
-        return PartPoses(time_s=snapshot.time_s, poses=poses)
+        return PartPoses(time_s=snapshot.time_s, poses=poses, up=self._up)

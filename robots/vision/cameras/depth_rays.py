@@ -31,7 +31,7 @@ class RayDepthRenderer:
         self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, voxel_m: float, middle_m: tuple[float, ...]
     ) -> None:
         self._cell = cell
-        self._rays = {camera.name: _Rays(camera, voxel_m, np.array(middle_m)) for camera in cameras}
+        self._rays = {camera.name: _Rays(camera, _step(camera, voxel_m, np.array(middle_m))) for camera in cameras}
 
     def intrinsics(self, camera: CameraSpec) -> CameraIntrinsics:
         """Return the intrinsics of the reduced image."""
@@ -40,6 +40,9 @@ class RayDepthRenderer:
     def exact(self, camera: CameraSpec) -> Image:
         """Return the exact depths, (height, width), infinite where nothing is hit."""
         rays = self._rays[camera.name]
+        if (camera.pose, camera.intrinsics) != (rays.camera.pose, rays.camera.intrinsics):
+            # A camera that stands elsewhere, or has another lens, than it is calibrated.
+            rays = _Rays(camera, rays.step)
         hit, distance = first_hits(self._cell, rays.start, rays.flat, reach_m=2.0 * camera.range_m[1])
         depth = np.where(hit >= 0, distance * rays.along, np.inf).astype(np.float32)
         return depth.reshape(rays.intrinsics.height_px, rays.intrinsics.width_px)
@@ -65,12 +68,17 @@ def first_hits(cell: PhysicsCopy, start: Array, along: Array, *, reach_m: float)
     return hit, distance
 
 
+def _step(camera: CameraSpec, voxel_m: float, middle_m: np.ndarray[Any, Any]) -> int:
+    away = max(float(np.linalg.norm(middle_m - camera.pose.xyz)), camera.range_m[0])
+    finest = _PITCH_VOXELS * voxel_m * camera.intrinsics.fx_px / away
+    return next((step for step in _STEPS if step <= finest), 1)
+
+
 class _Rays:
-    def __init__(self, camera: CameraSpec, voxel_m: float, middle_m: np.ndarray[Any, Any]) -> None:
+    def __init__(self, camera: CameraSpec, step: int) -> None:
+        self.camera, self.step = camera, step
         pose = RigidTransform.from_pose(camera.pose)
-        away = max(float(np.linalg.norm(middle_m - pose.xyz)), camera.range_m[0])
-        finest = _PITCH_VOXELS * voxel_m * camera.intrinsics.fx_px / away
-        self.intrinsics = reduced(camera.intrinsics, next((step for step in _STEPS if step <= finest), 1))
+        self.intrinsics = reduced(camera.intrinsics, step)
         ahead = directions(self.intrinsics)
         length = np.linalg.norm(ahead, axis=1)
         self.start = pose.xyz.copy()

@@ -25,11 +25,13 @@ class LiveOccupancyMap:
         self._fresh_s = fresh_s
         self._looked_at_s = -math.inf
         self._callbacks: list[Callable[[], None]] = []
-        self._published: tuple[int, str] = (0, "")
+        self._published: tuple[int, str, frozenset[str]] = (0, "", frozenset())
         self.latest: OccupancyGrid | None = None
         self.required = 0
         self.starting = False
         """Whether the cameras are still starting."""
+        self.unhealthy: frozenset[str] = frozenset()
+        """The cameras whose images cannot be relied on; a change counts as a change of the map."""
         self.lost_reason = ""
         """Why no images arrive; empty while they can."""
 
@@ -60,7 +62,7 @@ class LiveOccupancyMap:
         changed = self.latest is None or grid.revision != self.latest.revision
         if self.stale_reason:
             # A map becomes stale without notification; that it is valid again is still a change.
-            self._published = (self._published[0], "stale")
+            self._published = (self._published[0], "stale", self._published[2])
         self.latest, self._looked_at_s, self.lost_reason = grid, looked_at_s, ""
         self.notify()
         return changed
@@ -79,7 +81,7 @@ class LiveOccupancyMap:
         """Notify subscribers of changes; only this checks the age of the map."""
         # A rising age is not a change.
         stale = self.lost_reason or ("stale" if self.stale_reason else "")
-        now = (self.latest.revision if self.latest is not None else 0, stale)
+        now = (self.latest.revision if self.latest is not None else 0, stale, self.unhealthy)
         if now == self._published:
             return
         self._published = now

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import msgspec
 import numpy as np
 
 from engine.errors import CellError
-from engine.messages.sensing import DepthImage, OccupancyGrid
+from engine.messages.sensing import DepthImage, ObservedSpace, OccupancyGrid
 from engine.messages.shapes import Obstacle
 from robots.model.transform import RigidTransform
 from robots.port import Array
@@ -19,6 +19,7 @@ from robots.vision.cameras.camera import Image, depths
 from robots.vision.known_geometry import KnownGeometry, MeasuredState
 from robots.vision.occupancy.arm_body import ArmBody
 from robots.vision.occupancy.known_voxels import KnownVoxels
+from robots.vision.occupancy.observation_kernels import NEVER, mark_seen, write_ages
 from robots.vision.occupancy.occupancy_kernels import (
     Bytes,
     apply_evidence,
@@ -65,12 +66,15 @@ class OccupancyMapper:
     Args:
         box: The voxels, and the margins around known geometry.
         arms: All arms in view of the cameras.
+        far_m: How far each camera measures, by name; without a limit where it is missing.
 
     Raises:
         CellError: the model of an arm cannot be read.
     """
 
-    def __init__(self, box: VoxelBox, arms: Iterable[ArmPlacement]) -> None:
+    def __init__(
+        self, box: VoxelBox, arms: Iterable[ArmPlacement], *, far_m: Mapping[str, float] | None = None
+    ) -> None:
         self.box = box
         self._corner = np.array(box.corner_m, dtype=np.float64)
         self._shape = np.array(box.shape, dtype=np.int32)
@@ -85,6 +89,9 @@ class OccupancyMapper:
         self._levels, self._full, self._misses, self._streak, self._out = (
             np.zeros(size, dtype=np.uint8) for _ in range(5)
         )
+        self._far_m = dict(far_m or {})
+        self._seen = np.full(size, NEVER, dtype=np.int32)
+        self._taken_then: Bytes = np.zeros(size, dtype=np.uint8)
         self._revision = 0
         self._bits = np.packbits(self._out).tobytes()
 
@@ -96,6 +103,7 @@ class OccupancyMapper:
         """Restart with an empty map; the revision keeps increasing."""
         for array in (self._full, self._misses, self._streak):
             array[:] = 0
+        self._seen[:] = NEVER
         self._waits = 0
 
     def update(self, images: Iterable[DepthImage], moment: MeasuredState) -> OccupancyGrid:
@@ -106,7 +114,7 @@ class OccupancyMapper:
                 shape is invalid. The map is unchanged.
         """
         views = [_view(image) for image in images]
-        taken = self._taken(moment)
+        taken = self._taken_then = self._taken(moment)
         hits = 0
         for view in views:
             hits = self._count(view, taken, hits)
@@ -147,6 +155,39 @@ class OccupancyMapper:
         )
         unknown_voxels(self._full, taken, self._out)
         return self._grid(moment.time_s)
+
+    def observe(self, images: Iterable[DepthImage], *, time_s: float) -> ObservedSpace:
+        """Return when each voxel was last seen before `time_s`, also in these images; call it after `update`.
+
+        Raises:
+            CellError: as `update`.
+        """
+        box = self.box
+        for image in images:
+            view = _view(image)
+            mark_seen(
+                view.depth,
+                view.lens,
+                view.turn,
+                view.place,
+                self._corner,
+                box.voxel_m,
+                self._shape,
+                box.reach_m,
+                self._far_m.get(image.camera, math.inf),
+                _hundredths(image.time_s),
+                self._seen,
+            )
+        ages = np.empty(len(self._seen), dtype=np.uint8)
+        write_ages(self._seen, self._taken_then, _hundredths(time_s), ages)
+        return ObservedSpace(
+            time_s=time_s,
+            corner_m=box.corner_m,
+            voxel_m=box.voxel_m,
+            shape=box.shape,
+            limit_s=box.seen_within_s,
+            ages=ages.tobytes(),
+        )
 
     def _count(self, view: _View, taken: Bytes, hits: int) -> int:
         box = self.box
@@ -223,6 +264,10 @@ class OccupancyMapper:
             shape=box.shape,
             occupied=bits,
         )
+
+
+def _hundredths(time_s: float) -> int:
+    return round(100.0 * time_s)
 
 
 def _view(image: DepthImage) -> _View:

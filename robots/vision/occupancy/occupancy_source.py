@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import CameraStatus, ObservedSpace, OccupancyGrid
 from robots.planning.scene.planning_scene import PlanningScene
 
 Unsubscribe = Callable[[], None]
@@ -26,6 +26,16 @@ class OccupancySource(Protocol):
     @property
     def stale_reason(self) -> str:
         """Why `latest` is not valid: no image yet, cameras lost. Empty while it is valid."""
+        ...
+
+    @property
+    def observed(self) -> ObservedSpace | None:
+        """When each voxel was last seen, None before the first image or if no motion asks for it."""
+        ...
+
+    @property
+    def camera_statuses(self) -> tuple[CameraStatus, ...]:
+        """The status of each camera. A change of one counts as a change of the map."""
         ...
 
     @property

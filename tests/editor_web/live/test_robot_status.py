@@ -53,6 +53,10 @@ async def test_a_page_gets_all_arms_first_and_then_those_that_changed(tmp_path: 
         line = delta(client).robots["left"]
         assert (line.mode, line.activity, line.error, line.speed_override) == ("reflex", "", "pushed", 0.25)
         assert client.frame() is None
+        arm.become("moving", activity="cart_lin_task")
+        assert delta(client).robots["left"].activity == "line to a pose"
+        arm.become("moving", activity="to tray")
+        assert delta(client).robots["left"].activity == "to tray"
 
 
 async def test_the_way_of_an_arm_is_reported_with_what_blocks_it_and_since_when(tmp_path: Path) -> None:

@@ -26,6 +26,8 @@ parts:
   can: {shape: cylinder, size_m: [0.05, 0.1], mass_kg: 0.2, jitter: {xy_m: 0.01}}
 people:
   anna: {shoulder: [0, -0.8, 0.4], hand_rests: [0, -0.6, 0.1]}
+unknown_bodies:
+  crate: {shape: box, size_m: [0.2, 0.2, 0.2], at: {xyz: [0.4, 0, 0.1]}}
 """
 
 WRONG: dict[str, tuple[str, str, str, str]] = {
@@ -64,6 +66,26 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     ),
     "hand in the shoulder": ("[0, -0.6, 0.1]", "[0, -0.8, 0.41]", "[0, -0.8", "cannot rest 0.010 m"),
     "same name twice": ("can:", "table:", "table", "`table` is both a fixture and a part"),
+    "unknown body named as a part": ("crate:", "can:", "can", "`can` is both an unknown body and a part"),
+    "unknown body named as a person": ("crate:", "anna:", "anna", "`anna` is both an unknown body and a person"),
+    "unknown body with two lengths": ("[0.2, 0.2, 0.2]", "[0.2, 0.2]", "[0.2, 0.2]", "has 3 lengths, not 2"),
+    "weightless unknown body": ("[0.2, 0.2, 0.2],", "[0.2, 0.2, 0.2], mass_kg: 0,", "0,", "Mass in kilograms"),
+    "region outside the map": (
+        "unknown_bodies:",
+        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], "
+        "must_cover: {a: {center_m: [0, 0, 0.4], size_m: [1, 1, 1]}}}"
+        "\nunknown_bodies:",
+        "{center_m",
+        "the region a extends 0.400 m beyond the box of the map",
+    ),
+    "region without a camera": (
+        "unknown_bodies:",
+        "occupancy: {center_m: [0, 0, 0], size_m: [1, 1, 1], "
+        "must_cover: {a: {center_m: [0, 0, 0], size_m: [1, 1, 1]}}}"
+        "\nunknown_bodies:",
+        "must_cover",
+        "regions must be covered, but the cell has no camera",
+    ),
     "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not support `modules`"),
 }
 

@@ -84,7 +84,7 @@ async def test_a_motion_that_fails_under_a_load_that_is_not_set_names_its_mass()
         arm = world.arm("left")
         await grasp(world, force_n=100.0)
         motion = arm.follow(
-            smooth(arm.sample().position_rad, LIFTED, 1.0), tolerance=Tolerance(goal_rad=0.002, settle_s=0.3)
+            smooth(arm.sample().desired_rad, LIFTED, 1.0), tolerance=Tolerance(goal_rad=0.002, settle_s=0.3)
         )
         report = await motion.report()
     assert report.end is MotionEnd.FAILED

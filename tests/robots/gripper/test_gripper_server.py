@@ -177,3 +177,26 @@ async def test_every_goal_tells_how_the_gripper_was_before() -> None:
     assert opened is not None
     assert grasped.start == GripperSetting(width_m=0.08, held=False)
     assert opened.start == GripperSetting(width_m=0.031, held=True, force_n=20.0)
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize(
+    ("contacts", "part", "by"),
+    [(("part", "part"), "part", "contact"), (("?", "part"), "part", "contact"), (("?", "?"), "?", "width")],
+)
+async def test_a_gripper_says_what_it_holds_and_what_tells_it(contacts: tuple[str, str], part: str, by: str) -> None:
+    """In the result of the grasp and later; without a contact that names a body only the opening tells."""
+    async with served(FakeGripperPort(obstacle_m=0.03, contacts=contacts)) as bus:
+        result = (await bus.send_goal(GRASP, to=HAND).result()).result
+        state = await bus.call(ReadGripper(), to=HAND)
+    assert result is not None
+    assert (result.held, result.part, result.by) == (True, part, by)
+    assert (state.held, state.part, state.by) == (True, part, by)
+
+
+@pytest.mark.virtual
+async def test_a_gripper_that_holds_nothing_names_nothing() -> None:
+    async with served(FakeGripperPort()) as bus:
+        result = (await bus.send_goal(GRASP, to=HAND).result()).result
+    assert result is not None
+    assert (result.held, result.part, result.by) == (False, "", "width")

@@ -40,7 +40,7 @@ async def test_percent_and_time_reach_the_motor() -> None:
     port = FakeHandPort()
     result = await closed(port)
     assert port.asked == [(0.7, 1.5)]
-    assert result == HandResult(held=True, closed_percent=70.0, force_n=60.0, part="part")
+    assert result == HandResult(held=True, closed_percent=70.0, force_n=60.0, part="part", by="contact")
 
 
 @pytest.mark.virtual
@@ -126,3 +126,14 @@ async def test_a_device_fault_is_the_cause_of_the_failure() -> None:
         end = await handle.result()
     assert end.cause is not None
     assert (end.status, end.cause.chain()[-1].message) == (GoalStatus.ABORTED, "motor overheated")
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize(
+    ("contacts", "by"),
+    [(("part", "part", "", "", "", "part"), "contact"), (("?", "?", "", "", "", ""), "current"), ((), "not measured")],
+)
+async def test_a_hand_says_what_tells_it_that_it_holds(contacts: tuple[str, ...], by: str) -> None:
+    """One without a place that feels a contact claims nothing."""
+    result = await closed(FakeHandPort(contacts=contacts))
+    assert (result.by, result.held) == (by, by != "not measured")

@@ -9,6 +9,7 @@ import pytest
 
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
+from engine.messages import HoldEvidence
 from robots.magnet.magnet_server import MagnetServer
 from robots.magnet.magnet_skills import MagnetResult, MagnetSwitch, ReadMagnet
 from tests.robots.fake_tool_ports import FakeMagnetPort
@@ -34,11 +35,11 @@ async def switched(port: FakeMagnetPort, *, on: bool = True) -> MagnetResult:
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("contact", ["plate", "?"])
-async def test_a_plate_that_is_pulled_is_held(contact: str) -> None:
-    """Also where the magnet cannot tell which."""
+@pytest.mark.parametrize(("contact", "by"), [("plate", "contact"), ("?", "current")])
+async def test_a_plate_that_is_pulled_is_held(contact: str, by: HoldEvidence) -> None:
+    """Also where the magnet cannot tell which, and then it says so."""
     assert await switched(FakeMagnetPort(contact=contact)) == MagnetResult(
-        on=True, held=True, pull_n=200.0, part=contact
+        on=True, held=True, pull_n=200.0, part=contact, by=by
     )
 
 

@@ -90,3 +90,28 @@ async def test_a_plate_still_held_is_held() -> None:
 def test_magnet_states_command_the_magnet_and_questions_command_nothing() -> None:
     states = (On(magnet="arm"), Off(magnet="arm"), CheckHeld(magnet="arm"))
     assert [state.resources() for state in states] == [("arm/magnet",)] * 2 + [()]
+
+
+async def test_another_plate_at_the_magnet_is_missed_and_later_lost() -> None:
+    """The contact of the face names it."""
+    missed = await On(magnet="arm", part="plate").run(
+        ended(MagnetResult(on=True, held=True, pull_n=210.0, part="decoy", by="contact"))
+    )
+    assert (missed.name, missed.outputs) == ("missed", {"held": False, "pull_n": 210.0})
+    state = MagnetState(time_s=1.0, on=True, pull_n=210.0, held=True, part="decoy")
+    lost = await CheckHeld(magnet="arm", part="plate").run(FakeContext({"arm/magnet/read_magnet": state}))
+    assert lost.name == "lost"
+    for outcome in (missed, lost):
+        assert outcome.cause is not None
+        assert outcome.cause.chain()[-1].message == "it holds decoy, by contact, and not plate"
+
+
+async def test_a_magnet_that_cannot_name_what_it_pulls_at_holds() -> None:
+    ctx = ended(MagnetResult(on=True, held=True, pull_n=210.0, part="?", by="current"))
+    assert (await On(magnet="arm", part="plate").run(ctx)).name == "held"
+
+
+async def test_a_plate_that_sticks_is_named() -> None:
+    end = await Off(magnet="arm").run(ended(MagnetResult(on=True, held=True, pull_n=90.0, part="plate", by="contact")))
+    assert end.cause is not None
+    assert end.cause.chain()[-1].message == "it still pulls at plate with 90.0 N"

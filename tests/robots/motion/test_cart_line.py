@@ -104,7 +104,8 @@ def test_a_line_that_is_too_fast_names_joint_time_and_limit_and_the_time_it_asks
     with pytest.raises(RobotError) as refusal:
         plan(move, turn, duration_s=0.3)
     found = re.fullmatch(
-        r"(panda_joint\d) would need ([\d.]+) rad/s at t=([\d.]+) s, limit ([\d.]+) \(allow at least ([\d.]+) s\)",
+        r"(panda_joint\d) would need ([\d.]+) rad/s at t=([\d.]+) s, limit ([\d.]+), to arrive"
+        r" after [\d.]+ s \(allow at least ([\d.]+) s\)",
         str(refusal.value),
     )
     assert found, str(refusal.value)

@@ -57,4 +57,7 @@ def test_the_speed_between_two_samples_is_known_exactly() -> None:
     check_speed(limits, NAMES, line((0.0, 0.0), (1.0, 0.0), dt_s=1.0))
     with pytest.raises(RobotError) as refusal:
         check_speed(limits, NAMES, line((0.0, 0.0), (1.96, 0.0), dt_s=1.0))
-    assert str(refusal.value) == "shoulder would need 2.9 rad/s at t=0.00 s, limit 1.5 (allow at least 2.0 s)"
+    assert (
+        str(refusal.value)
+        == "shoulder would need 2.9 rad/s at t=0.00 s, limit 1.5, to arrive after 1 s (allow at least 2.0 s)"
+    )

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.document.cell import CellDocument, Fixture, GripperSpec, Spring, load_cell
+from engine.document.cell import CellDocument, Fixture, GripperSpec, MujocoWorld, Spring, load_cell
 from engine.errors import CellError
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
@@ -32,6 +32,15 @@ def test_a_seed_moves_parts_and_adding_a_part_moves_no_other(document: CellDocum
     (part,) = build_scene(alone, seed=3).parts
     assert part == build_scene(document, seed=3).parts[0]
     assert part.pose != build_scene(document).parts[0].pose
+
+
+def test_the_realism_of_the_world_reaches_the_scene_with_the_seed_of_the_run(document: CellDocument) -> None:
+    assert (build_scene(document, seed=3).realism, build_scene(document).seed) == ("ideal", 0)
+    poor = msgspec.structs.replace(document, world=MujocoWorld(realism="poor"))
+    scene = build_scene(poor, seed=3)
+    assert (scene.realism, scene.seed) == ("poor", 3)
+    with pytest.raises(msgspec.ValidationError, match="Invalid enum value 'real'"):
+        msgspec.convert({"kind": "mujoco", "realism": "real"}, MujocoWorld)
 
 
 def test_a_part_taken_from_the_document_is_gone_from_the_world(document: CellDocument) -> None:

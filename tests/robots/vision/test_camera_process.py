@@ -16,7 +16,8 @@ from engine.cell.open_cell import OpenCell
 from engine.document.cell_perception import ObjectDetector
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import NEVER_SEEN, OccupancyGrid
+from engine.skills.simulated_world import CameraFault
 from robots.scene.sim_scene import ArmPlacement, PartBody
 from robots.sim.world.sim_world import SimWorld
 from robots.vision.camera_process import CameraProcess
@@ -58,6 +59,28 @@ def test_the_process_finds_the_parts_that_it_is_asked_to_look_for() -> None:
     (found,) = seen.detections[0].detections
     assert (found.label, found.score) == ("cup", 1.0)
     assert found.pose.xyz == pytest.approx((0.4, 0.1, 0.3), abs=1e-3)
+
+
+def test_faults_conditions_and_observed_space_cross_the_process_border() -> None:
+    async def main() -> tuple[PerceptionResult, PerceptionResult]:
+        process = CameraProcess()
+        await process.start(perception_setup(scene()))
+        try:
+            seen = await process.look(msgspec.structs.replace(look(scene()), observed=True))
+            blind = msgspec.structs.replace(
+                look(scene()), observed=True, time_s=1.5, faults={"front": CameraFault(kind="dark")}
+            )
+            return seen, await process.look(blind)
+        finally:
+            process.end()
+
+    seen, blind = asyncio.run(main())
+    assert [result.statuses[0].condition for result in (seen, blind)] == ["healthy", "dark"]
+    assert seen.observed is not None
+    assert blind.observed is not None
+    assert min(seen.observed.ages) == 0
+    # What was seen 1.5 s ago is as old; the dark image has shown nothing.
+    assert set(blind.observed.ages) == {0, 15, NEVER_SEEN}
 
 
 def test_what_the_process_sees_is_what_is_there() -> None:

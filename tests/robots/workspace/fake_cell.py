@@ -13,7 +13,7 @@ from engine.bus import GoalHandle, SkillBus
 from engine.clock import Clock, new_clock
 from engine.errors import RobotError
 from engine.messages import Pose
-from engine.messages.sensing import OccupancyGrid
+from engine.messages.sensing import NEVER_SEEN, CameraStatus, ObservedSpace, OccupancyGrid
 from engine.messages.shapes import Box, Obstacle
 from engine.skills.planning import FreeMotionFeedback, FreeMotionResult, MoveFree
 from engine.skills.planning_scene import CollisionReport
@@ -31,11 +31,13 @@ from robots.planning.request import (
     PlanRequest,
 )
 from robots.planning.scene.planning_scene import PlanningScene, SceneArm
+from robots.planning.swept_space import SweptSpace, SweptSpaceRequest
 from robots.planning.worker.inline_planner import InlinePlanner
 from robots.scene.sim_scene import ArmPlacement
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
 from robots.workspace.planning_services import PlanningServices
+from robots.workspace.unknown_space import UnknownSpaceRule
 from robots.workspace.workspace import Workspace
 from tests.robots.fake_port import FakeArmPort
 from tests.robots.panda_arm import BASE, panda_kinematics, panda_model
@@ -96,6 +98,11 @@ class FragilePlanner:
         await self._fail()
         return await self._inner.pair_distances(request)
 
+    async def swept_space(self, request: SweptSpaceRequest) -> SweptSpace:
+        """Return the unknown space on a trajectory."""
+        await self._fail()
+        return await self._inner.swept_space(request)
+
     async def _fail(self) -> None:
         if self.silent_s:
             await self._clock.sleep(self.silent_s)
@@ -110,6 +117,8 @@ class FakeCameras:
         self.latest: OccupancyGrid | None = None
         self.stale_reason = "no image yet"
         self.starting = False
+        self.observed: ObservedSpace | None = None
+        self.camera_statuses: tuple[CameraStatus, ...] = ()
         self.required = 0
         self.known: PlanningScene | None = None
         self.forgotten = 0
@@ -157,6 +166,17 @@ class FakeCameras:
         )
         self.go_blind("")
 
+    def see_all_but(self, *boxes: tuple[tuple[float, float, float], tuple[float, float, float]]) -> None:
+        """Have seen everything just now, but these boxes never."""
+        ages = np.zeros(SHAPE, dtype=np.uint8)
+        for low, high in boxes:
+            first = np.floor((np.array(low) - BOX_M) / VOXEL_M).astype(int).clip(0)
+            last = np.ceil((np.array(high) - BOX_M) / VOXEL_M).astype(int)
+            ages[first[0] : last[0], first[1] : last[1], first[2] : last[2]] = NEVER_SEEN
+        self.observed = ObservedSpace(
+            time_s=0.0, corner_m=BOX_M, voxel_m=VOXEL_M, shape=SHAPE, limit_s=5.0, ages=ages.tobytes()
+        )
+
     def go_blind(self, reason: str) -> None:
         """See nothing from now on, for this reason; empty to see again."""
         self.stale_reason = reason
@@ -191,7 +211,9 @@ class FakeCell:
 
 
 @asynccontextmanager
-async def fake_cell(*, tool: ToolServer | None = None) -> AsyncGenerator[FakeCell]:
+async def fake_cell(
+    *, tool: ToolServer | None = None, unknown_space: UnknownSpaceRule | None = None
+) -> AsyncGenerator[FakeCell]:
     """The left Panda at a table, on a bus."""
     model, clock = panda_model(), new_clock()
     port = FakeArmPort(model.arm_joints, np.array(model.home_rad))
@@ -209,7 +231,11 @@ async def fake_cell(*, tool: ToolServer | None = None) -> AsyncGenerator[FakeCel
         return LiveScene(base.with_allowed("left/panda_link1", "table"), parts=(), look=look)
 
     workspace = Workspace(
-        make_scene, planners=PlanningServices(clock, lambda _: planner), clock=clock, occupancy=cameras
+        make_scene,
+        planners=PlanningServices(clock, lambda _: planner),
+        clock=clock,
+        occupancy=cameras,
+        unknown_space=unknown_space,
     )
     arm = ArmServer(
         name="left", model=model, base=BASE.to_pose("world"), port=port, clock=clock, gripper=tool, workspace=workspace

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.errors import Cause
-from engine.messages import GripperState
+from engine.messages import GripperState, HoldEvidence
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove, GripperOpen
 from engine.state import Outcome, State
@@ -123,3 +123,46 @@ def test_gripper_states_command_the_gripper_and_questions_command_nothing() -> N
         CheckHeld(gripper="left"),
     )
     assert [state.resources() for state in states] == [("left/gripper",)] * 3 + [()]
+
+
+DECOY_CHAIN = "it holds decoy, by contact, and not hca_north"
+
+
+@pytest.mark.parametrize(
+    ("touched", "by", "outcome"),
+    [
+        ("decoy", "contact", "missed"),
+        ("hca_north", "contact", "held"),
+        ("?", "width", "held"),
+        ("", "not measured", "held"),
+    ],
+)
+async def test_a_grasp_of_another_part_of_the_same_width_is_missed_where_contact_is_measured(
+    touched: str, by: HoldEvidence, outcome: str
+) -> None:
+    """A gripper that cannot name what it touches is not asked for more than it measures."""
+    result = GraspResult(held=True, width_m=0.03, force_n=20.0, part=touched, by=by)
+    ctx = FakeContext({"left/gripper/gripper_grasp": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
+    end = await Grasp(gripper="left", width_m=0.03, part="hca_north").run(ctx)
+    assert (end.name, end.outputs) == (outcome, {"held": outcome == "held", "width_m": 0.03})
+    if outcome == "missed":
+        assert end.cause is not None
+        assert [link.message for link in end.cause.chain()] == ["left did not grasp part hca_north", DECOY_CHAIN]
+
+
+async def test_without_a_part_any_body_is_held() -> None:
+    """Nothing is expected, so nothing is another one."""
+    result = GraspResult(held=True, width_m=0.03, force_n=20.0, part="decoy", by="contact")
+    ctx = FakeContext({"left/gripper/gripper_grasp": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
+    assert (await Grasp(gripper="left", width_m=0.03).run(ctx)).name == "held"
+
+
+@pytest.mark.parametrize(("touched", "outcome"), [("decoy", "lost"), ("hca_north", "held"), ("?", "held")])
+async def test_a_part_that_was_exchanged_is_lost(touched: str, outcome: str) -> None:
+    measured = GripperState(time_s=1.0, width_m=0.03, force_n=20.0, held=True, part=touched)
+    ctx = FakeContext({"left/gripper/read_gripper": measured})
+    end = await CheckHeld(gripper="left", part="hca_north").run(ctx)
+    assert end.name == outcome
+    if outcome == "lost":
+        assert end.cause is not None
+        assert [link.message for link in end.cause.chain()] == ["left lost part hca_north", DECOY_CHAIN]

@@ -82,3 +82,17 @@ async def test_what_is_still_held_is_held_and_what_is_lost_is_named() -> None:
 def test_hand_states_command_the_hand_and_questions_command_nothing() -> None:
     states = (Open(hand="left"), Close(hand="left", percent=50.0), CheckHeld(hand="left"))
     assert [state.resources() for state in states] == [("left/hand",)] * 2 + [()]
+
+
+async def test_another_part_in_the_hand_is_missed_and_later_lost() -> None:
+    """The contacts of thumb and fingers name it."""
+    result = HandResult(held=True, closed_percent=70.0, force_n=50.0, part="decoy", by="contact")
+    closed = FakeContext({"left/hand/hand_close": GoalEnd(GoalStatus.SUCCEEDED, result, None)})
+    missed = await Close(hand="left", percent=70, part="hca_north").run(closed)
+    assert (missed.name, missed.outputs["held"]) == ("missed", False)
+    state = HandState(time_s=1.0, closed_percent=70.0, force_n=50.0, held=True, part="decoy")
+    lost = await CheckHeld(hand="left", part="hca_north").run(FakeContext({"left/hand/read_hand": state}))
+    assert lost.name == "lost"
+    for outcome in (missed, lost):
+        assert outcome.cause is not None
+        assert outcome.cause.chain()[-1].message == "it holds decoy, by contact, and not hca_north"

@@ -2118,7 +2118,7 @@ export interface ResumeQuestionsBody {
   readonly questions: readonly ResumeQuestion[]
 }
 
-/** One arm: its mode, its activity, the error of a reflex stop, and its speed override. `path` is its planned path, which the 3D view shows. */
+/** One arm: its mode, its activity in words, the error of a reflex stop, and its speed override. `path` is its planned path, which the 3D view shows. */
 export interface RobotLive {
   readonly name: string
   readonly mode: string

@@ -100,10 +100,11 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
             fw="inherit"
             style={{ gap: 6, alignItems: 'center' }}
             title={runWords(named)}
+            aria-label={nameOf(named.behavior)}
             onClick={() => onRun(named.id)}
           >
             <StatusIcon status={runStateOf(named).look} size={14} />
-            <Text span inherit truncate>
+            <Text span inherit truncate visibleFrom="xs">
               {nameOf(named.behavior)}
             </Text>
           </UnstyledButton>
@@ -124,7 +125,10 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
         <People />
       </WhileLoading>
       {named && mayOperate && <StopButton run={named} />}
-      <SchemeSwitch />
+      {/* On a phone the commands of a run take its place. */}
+      <Box {...(named && { visibleFrom: 'xs' })}>
+        <SchemeSwitch />
+      </Box>
     </>
   )
 }
@@ -138,8 +142,9 @@ function StopButton({ run }: { run: RunView }) {
       title={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}
       variant="default"
       size="xs"
+      flex="none"
+      px={{ base: 9, xs: 14 }}
       aria-label={isStopping ? 'This run is stopping' : 'Stop this run'}
-      leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
       disabled={isStopping || !isConnected}
       onClick={() => {
         api.stop(run.id).then(
@@ -148,9 +153,9 @@ function StopButton({ run }: { run: RunView }) {
         )
       }}
     >
-      {isStopping ? 'Stopping' : 'Stop'}
-      <Text span inherit visibleFrom="xs">
-        &nbsp;{isStopping ? '' : 'this run'}
+      <IconPlayerStopFilled size={14} aria-hidden />
+      <Text span inherit ms="2xs" visibleFrom="xs">
+        {isStopping ? 'Stopping' : 'Stop this run'}
       </Text>
     </Button>
   )

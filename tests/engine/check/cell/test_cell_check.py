@@ -76,6 +76,12 @@ def test_a_good_cell_has_no_findings(tmp_path: Path) -> None:
             "11:62: error: the cell bench has no part `plat` (did you mean plate?) [unknown-in-cell]",
         ),
         (
+            "cameras:",
+            "occupancy: {center_m: [0, 0, 0.5], size_m: [1, 1, 1]}\ncameras:",
+            "10:1: warning: motions may pass through space that no camera has seen (name what the cameras must see in"
+            " `must_cover`, or choose `unknown_space`) [unseen-space-accepted]",
+        ),
+        (
             "rpy: [0, 0, 3.14]",
             "rpy: [0, 0, 180]",
             "7:52: warning: `rpy`: 180 rad looks like degrees (if so, write [0, 0, 3.1416]) [suspect-unit]",

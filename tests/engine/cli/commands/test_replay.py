@@ -10,6 +10,7 @@ import pytest
 
 from engine.journal import list_runs
 from tests.engine.cli.command import CommandOutput, flexcell
+from tests.engine.recording.altered_recording import alter_events
 
 RECORDINGS = Path(__file__).parents[3] / "replay"
 WAIT = """
@@ -61,6 +62,29 @@ def test_a_difference_is_exit_code_4_and_one_line_with_both_sides(project: Path)
         "run.mcap: differs: event 5 at 60.000 s, root: "
         'recorded `wait —done→ choose`; replayed `wait —done→ failed` (target: "choose" ≠ "failed")'
     )
+
+
+def test_a_changed_default_is_exit_code_4_and_names_the_parameter(project: Path) -> None:
+    record(project)
+    (project / "changed.yaml").write_text(WAIT.replace("default: 60", "default: 50"), encoding="utf-8")
+    said = flexcell("replay", "run.mcap", "--behavior", "changed.yaml", "--json", "--junit", "r.xml", cwd=project)
+    (row,) = json.loads(said.out)["replays"]
+    assert (said.code, row["status"], row["records"]) == (4, "differs", "verified")
+    line = "event 1 at 0.000 s: recorded parameter `pause = 60`, by default; replayed default `pause = 50`"
+    assert [each["message"].startswith(line) for each in row["differences"]] == [True]
+    assert line in (project / "r.xml").read_text(encoding="utf-8")
+    text = flexcell("replay", "run.mcap", "--behavior", "changed.yaml", cwd=project)
+    assert (text.code, text.err.startswith(f"run.mcap: differs: {line}")) == (4, True)
+
+
+def test_an_altered_event_is_exit_code_4_and_named(project: Path) -> None:
+    """Beside what comes of it."""
+    record(project)
+    alter_events(project / "run.mcap", project / "altered.mcap", lambda data: data.replace(b'"done"', b'"gone"'))
+    said = flexcell("replay", "altered.mcap", cwd=project)
+    assert said.code == 4
+    assert "altered.mcap: also differs: event 4 at 60.000 s, root/wait: recorded an event with digest" in said.err
+    assert "(the recording was altered after the run)" in said.err
 
 
 def test_json_and_junit_report_all_of_several(project: Path) -> None:

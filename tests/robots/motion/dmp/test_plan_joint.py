@@ -115,7 +115,7 @@ def test_too_fast_names_joint_time_and_limit_and_the_tau_it_asks_for_suffices() 
     with pytest.raises(RobotError) as refusal:
         plan(dmp, home())
     found = re.fullmatch(
-        r"(panda_joint\d) would need [\d.]+ rad/s²? at t=([\d.]+) s, limit [\d.]+"
+        r"(panda_joint\d) would need [\d.]+ rad/s²? at t=([\d.]+) s, limit [\d.]+, to arrive after 0.3 s"
         r" \(give it a tau of at least ([\d.]+) s\)",
         str(refusal.value),
     )

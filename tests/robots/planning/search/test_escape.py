@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
+import re
 
 import msgspec
 import numpy as np
@@ -27,7 +27,8 @@ from robots.planning.scene.planning_scene import PlanningScene
 from robots.planning.search.escape import EscapeChecker
 from robots.planning.worker.scene_planner import GIVEN_PATH, ScenePlanner
 from robots.port import Array
-from tests.robots.planning.scene.test_voxels import grid_of
+from tests.robots.planning.motion_oracle import MotionOracle, fine_steps
+from tests.robots.planning.scene.test_voxels import VOXEL_M, grid_of
 
 PLANNER = ScenePlanner(check_s=2e-5)
 PANDA = alone("panda")
@@ -50,13 +51,9 @@ def request(scene: PlanningScene, goal: tuple[float, ...] = AWAY) -> PlanRequest
 
 
 def gaps_along(scene: PlanningScene, path: Array) -> list[float]:
-    """Return the clearance along a way, every 5 mm of motion."""
-    checker = ExactChecker(scene, ARM)
-    found = [checker.clearance(path[0]).distance_m]
-    for before, after in itertools.pairwise(path):
-        count = checker.steps(before, after, step_m=0.005)
-        found += [checker.clearance(before + (after - before) * i / count).distance_m for i in range(1, count + 1)]
-    return found
+    """Return the clearance along a way in fine steps, as MuJoCo measures it; infinite beyond twice the margin."""
+    oracle = MotionOracle(scene, ARM, margin_m=2.0 * MARGIN_M)
+    return [oracle.gap_m(joints) for joints in fine_steps(path)]
 
 
 def path_of(answer: PlanAnswer) -> Array:
@@ -92,8 +89,12 @@ def test_what_is_left_may_be_what_cameras_see() -> None:
     answer = PLANNER.plan(msgspec.structs.replace(request(PANDA), occupancy=_seen(first_free)))
     path = path_of(answer)
     assert len(path) > 2
-    checker = PLANNER.prepared(PANDA, ARM, occupancy=_seen(first_free), margin_m=MARGIN_M).checker
-    assert checker.first_collision(path[1:]) is None
+    side_m = 10 * VOXEL_M
+    middle = (first_free - 0.1 + side_m / 2, -0.1 + side_m / 2, 0.4 + side_m / 2)
+    block = box("seen", (side_m, side_m, side_m), middle)
+    oracle = MotionOracle(PANDA.with_obstacles(block), ARM, margin_m=MARGIN_M)
+    assert oracle.first_touch(path[1:]) is None
+    assert MotionOracle(PANDA.with_obstacles(block), ARM).first_touch(path) is None
 
 
 def _seen(x: float) -> OccupancyGrid:
@@ -119,6 +120,17 @@ def test_a_goal_within_the_margin_is_refused() -> None:
     answer = PLANNER.plan(msgspec.structs.replace(request(beside(0.02), HOME), start_rad=AWAY))
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "goal_in_collision"
+    # What was asked for and what is: both numbers.
+    found = re.search(r"is ([\d.]+) mm from block, nearer than the margin of 40 mm", answer.message)
+    assert found is not None, answer.message
+    assert float(found[1]) == pytest.approx(20.0, abs=1.5)
+    assert "reduce the margin" in answer.hint
+
+
+def test_what_touches_is_said_to_touch_whatever_the_margin() -> None:
+    answer = PLANNER.plan(msgspec.structs.replace(request(beside(-0.01), HOME), start_rad=AWAY))
+    assert isinstance(answer, PlanRefusal)
+    assert "touches block" in answer.message
 
 
 def test_leaving_ends_where_the_whole_margin_is_kept_for_once() -> None:

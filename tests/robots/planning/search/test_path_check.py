@@ -27,7 +27,8 @@ from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array, JointTrajectory
-from tests.robots.planning.scene.test_voxels import LOWER, UPPER, grid_of
+from tests.robots.planning.motion_oracle import MotionOracle
+from tests.robots.planning.scene.test_voxels import LOWER, UPPER, VOXEL_M, grid_of
 
 PLANNER = ScenePlanner(check_s=2e-5)
 PANDA = alone("panda")
@@ -174,6 +175,17 @@ def test_a_way_that_was_planned_is_free_in_its_own_scene() -> None:
     assert answer.timed is not None
     found = check(answer.timed, scene=SHELF.scene)
     assert found.blocked_at_s is None
+    assert MotionOracle(SHELF.scene, ARM).first_touch(answer.timed.position_rad) is None
+
+
+def test_what_the_check_says_is_what_mujoco_finds() -> None:
+    """The first touch is where the simulator's contacts begin, within what the shapes differ by."""
+    scene = PANDA.with_obstacles(WALL)
+    blocked_s = check(WAY, scene=scene).blocked_at_s
+    assert blocked_s is not None
+    oracle = MotionOracle(scene, ARM)
+    touched_s = next(k * WAY.dt_s for k, joints in enumerate(WAY.position_rad) if oracle.touches(joints))
+    assert blocked_s == pytest.approx(touched_s, abs=0.01)
 
 
 def test_what_comes_into_view_blocks_and_what_may_touch_it_does_not() -> None:
@@ -251,9 +263,12 @@ def test_a_plan_goes_around_what_cameras_see() -> None:
     answer = PLANNER.plan(request)
     assert isinstance(answer, PathPlan), answer
     assert len(answer.path) > 2
-    checker = PLANNER.prepared(PANDA, ARM, occupancy=grid).checker
-    assert checker.first_collision(answer.path, step_m=0.005) is None
     assert answer.timed is not None
+    side = (6 * VOXEL_M, 4 * VOXEL_M, 20 * VOXEL_M)
+    middle = (0.25 + side[0] / 2, -0.04 + side[1] / 2, 0.3 + side[2] / 2)
+    oracle = MotionOracle(PANDA.with_obstacles(box("seen", side, middle)), ARM, margin_m=0.01)
+    assert oracle.first_touch(answer.path) is None
+    assert oracle.first_touch(answer.timed.position_rad) is None
     assert check(answer.timed, occupancy=grid).blocked_at_s is None
     again = PLANNER.plan(request)
     assert isinstance(again, PathPlan)

@@ -125,7 +125,7 @@ def test_waypoints_at_the_start_take_no_time() -> None:
     [
         (0.001, None, "the speed cannot be 0.001"),
         (float("nan"), None, "the speed cannot be nan"),
-        (0.5, 1e-5, "the motion would take"),
+        (0.5, 1e-5, "s with a tool speed of 1e-05 m/s"),
         (0.5, float("nan"), "the motion would take nan"),
     ],
 )

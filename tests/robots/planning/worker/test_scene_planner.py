@@ -31,6 +31,7 @@ from robots.planning.scene.planning_scene import AttachedPart
 from robots.planning.worker.planning_messages import FromPlanner, ToPlanner
 from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array
+from tests.robots.planning.motion_oracle import MotionOracle
 from tests.tiers import nightly
 
 PLANNER = ScenePlanner(check_s=2e-5)
@@ -51,11 +52,14 @@ def path_of(answer: PlanAnswer) -> Array:
     return answer.path
 
 
-def confirm(request: PlanRequest, path: Array) -> None:
-    """A finer look than the planner's own finds nothing, and the ends are those asked for."""
-    checker = ExactChecker(request.scene, request.arm, margin_m=max(0.0, request.margin_m - 1e-4))
-    hit = checker.first_collision(path, step_m=0.005)
-    assert hit is None or checker.clearance(hit.joints).distance_m > request.margin_m - 0.002, hit
+def confirm(request: PlanRequest, answer: PlanAnswer) -> None:
+    """MuJoCo finds no contact on the path nor on the motion that follows it, and the ends are those asked for."""
+    path = path_of(answer)
+    oracle = MotionOracle(request.scene, request.arm, margin_m=request.margin_m)
+    assert oracle.first_touch(path) is None
+    assert isinstance(answer, PathPlan)
+    if answer.timed is not None:
+        assert oracle.first_touch(answer.timed.position_rad) is None
     assert path[0].tolist() == list(request.start_rad)
     if isinstance(request.goal, JointGoal):
         assert tuple(path[-1].tolist()) in request.goal.joints_rad
@@ -64,7 +68,7 @@ def confirm(request: PlanRequest, path: Array) -> None:
 @pytest.mark.parametrize("title", list(CASES))
 def test_the_fast_planner_finds_a_confirmed_way_in_every_experiment(title: str) -> None:
     for seed in range(3):
-        confirm(CASES[title], path_of(plan(CASES[title], seed=seed)))
+        confirm(CASES[title], plan(CASES[title], seed=seed, speed=1.0))
 
 
 def test_where_nothing_is_in_the_way_the_way_is_the_straight_line() -> None:
@@ -74,7 +78,7 @@ def test_where_nothing_is_in_the_way_the_way_is_the_straight_line() -> None:
 
 @pytest.mark.parametrize("planner", ["stomp", *(nightly(name) if name in SLOW else name for name in OMPL_PLANNERS)])
 def test_every_planner_finds_a_confirmed_way_around_a_box(planner: str) -> None:
-    confirm(IRB_BOX, path_of(plan(IRB_BOX, planner=planner, time_s=30.0)))
+    confirm(IRB_BOX, plan(IRB_BOX, planner=planner, time_s=30.0))
 
 
 @pytest.mark.parametrize("planner", ["fast", "stomp", "RRTConnect", "KPIECE1"])
@@ -91,17 +95,18 @@ def _with(request: PlanRequest, planner: str, seed: int) -> PlanRequest:
 @pytest.mark.parametrize("seed", range(8))
 def test_random_shelves_with_clutter_are_solved(seed: int) -> None:
     request = random_case(seed).request
-    confirm(request, path_of(plan(request)))
+    confirm(request, plan(request, speed=0.5))
 
 
 def test_a_pose_is_reached_by_whichever_configuration_is_free() -> None:
     goal = Pose(xyz=(0.2, 0.45, 0.3), xyzw=DOWN)
     request = PlanRequest(scene=shelf_scene(), arm=ARM, start_rad=HOME, goal=PoseGoal(pose=goal))
-    path = path_of(plan(request))
+    answer = plan(request)
+    path = path_of(answer)
     reached = ArmKinematics(robot_model("panda"), base=ORIGIN).tool_pose(path[-1])
     assert reached.distance_m(RigidTransform.from_pose(goal)) < 1e-4
     assert reached.angle_rad(RigidTransform.from_pose(goal)) < 1e-3
-    confirm(request, path)
+    confirm(request, answer)
 
 
 def test_the_arm_goes_around_something_rather_than_straight_to_a_far_configuration_of_the_goal() -> None:
@@ -119,7 +124,7 @@ def test_the_arm_goes_around_something_rather_than_straight_to_a_far_configurati
 
 def test_a_margin_is_kept_from_obstacles() -> None:
     request = msgspec.structs.replace(IRB_BOX, margin_m=0.1)
-    confirm(request, path_of(plan(request)))
+    confirm(request, plan(request, speed=1.0))
 
 
 def test_a_held_rod_makes_the_way_wider() -> None:
@@ -133,9 +138,10 @@ def test_a_held_rod_makes_the_way_wider() -> None:
     rod = Solid(shape=Box(size_m=(0.6, 0.02, 0.02)), pose=Pose(xyz=(0.0, 0.0, 0.02)))
     held = scene.with_attached(AttachedPart(name="rod", arm=ARM, solids=(rod,)))
     carrying = msgspec.structs.replace(request, scene=held)
-    path = path_of(plan(carrying))
+    answer = plan(carrying)
+    path = path_of(answer)
     assert len(path) > 2
-    confirm(carrying, path)
+    confirm(carrying, answer)
 
 
 def test_a_start_next_to_something_is_left_although_the_spheres_are_larger_than_the_arm() -> None:
@@ -148,7 +154,7 @@ def test_a_start_next_to_something_is_left_although_the_spheres_are_larger_than_
     assert 0.002 < start_gap < 0.004
     goal = (1.2, *HOME[1:])
     request = PlanRequest(scene=scene, arm=ARM, start_rad=HOME, goal=JointGoal(joints_rad=(goal,)))
-    confirm(request, path_of(plan(request)))
+    confirm(request, plan(request))
 
 
 @pytest.mark.parametrize("free_about", [(0.0, 0.0, 1.0), None])
@@ -163,8 +169,9 @@ def test_the_tool_keeps_its_orientation_on_the_whole_way(free_about: tuple[float
         keep_orientation=PathOrientationConstraint(tolerance_rad=0.15, free_about=free_about),
         time_s=20.0,
     )
-    path = path_of(plan(request))
-    confirm(request, path)
+    answer = plan(request)
+    path = path_of(answer)
+    confirm(request, answer)
     kinematics = ArmKinematics(robot_model("panda"), base=ORIGIN)
     begin = kinematics.tool_pose(path[0])
     for a, b in pairwise(path):
@@ -234,6 +241,18 @@ def test_no_path_in_time_is_said_with_what_was_tried(planner: str) -> None:
     assert isinstance(answer, PlanRefusal)
     assert answer.reason == "no_path_in_time"
     assert "configurations checked" in answer.message
+    assert f"{planner} found no path within 0.2 s" in answer.message
+
+
+def test_no_path_quotes_the_margin_and_the_tolerance_that_were_asked_for() -> None:
+    """With a smaller one there might be a path."""
+    asked = {"margin_m": 0.013, "time_s": 0.1}
+    answer = plan(_caged(), **asked)
+    assert isinstance(answer, PlanRefusal)
+    assert "within 0.1 s with a margin of 13 mm (" in answer.message
+    kept = plan(_caged(), keep_orientation=PathOrientationConstraint(tolerance_rad=3.1), **asked)
+    assert isinstance(kept, PlanRefusal)
+    assert "13 mm, the tool turned by at most 3.1 rad (" in kept.message
 
 
 def test_a_plan_no_longer_wanted_ends() -> None:
@@ -273,6 +292,7 @@ def test_a_small_ball_in_the_way_of_the_elbow_is_avoided_too() -> None:
     middle = kinematics.tool_pose(np.array((0.8, *HOME[1:]))).to_pose("world")
     scene = alone("panda").with_obstacles(msgspec.structs.replace(ball, pose=middle))
     request = PlanRequest(scene=scene, arm=ARM, start_rad=HOME, goal=JointGoal(joints_rad=((1.57, *HOME[1:]),)))
-    path = path_of(plan(request))
+    answer = plan(request)
+    path = path_of(answer)
     assert len(path) > 2
-    confirm(request, path)
+    confirm(request, answer)
