@@ -13,6 +13,7 @@ import pytest
 from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
+from robots.motion.min_jerk import PEAK_ACCELERATION, PEAK_SPEED
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.world.sim_world import SimWorld, new_world
@@ -23,6 +24,9 @@ both_hosts = pytest.mark.parametrize("host", [_LOCKSTEP, "process"])
 """The same world stepped by a virtual clock, and by a process of its own in real time."""
 both_hosts_nightly = pytest.mark.parametrize("host", [_LOCKSTEP, nightly("process")])
 """What `both_hosts` has shown to be the same already; in real time it takes its time."""
+
+# Of a minimum-jerk motion, as a share of distance over duration cubed.
+_PEAK_JERK = 60.0
 
 PANDA = model_by_name("panda")
 HOME = np.array(PANDA.home_rad)
@@ -66,13 +70,25 @@ def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> SimScene:
 
 
 def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:
-    """Return a minimum-jerk motion between two configurations, sampled every 2 ms."""
+    """Return a minimum-jerk motion of a Panda between two configurations, sampled every 2 ms.
+
+    It takes longer where the limits of the arm need more time.
+    """
+    duration_s = max(duration_s, _least_s(np.abs(goal - start)))
     u = np.linspace(0.0, 1.0, round(duration_s / 0.002) + 1)[:, None]
     return JointTrajectory(
         dt_s=0.002,
         position_rad=start + (goal - start) * (10 * u**3 - 15 * u**4 + 6 * u**5),
         velocity_rad_s=(goal - start) * (30 * u**2 - 60 * u**3 + 30 * u**4) / duration_s,
     )
+
+
+def _least_s(span_rad: Array) -> float:
+    limits = PANDA.limits
+    speed = PEAK_SPEED * span_rad / np.array(limits.velocity_rad_s)
+    push = PEAK_ACCELERATION * span_rad / np.array(limits.acceleration_rad_s2)
+    jerk = _PEAK_JERK * span_rad / np.array(limits.jerk_rad_s3)
+    return float(np.maximum(np.maximum(speed, np.sqrt(push)), np.cbrt(jerk)).max())
 
 
 async def move(arm: ArmPort, goal: Array, duration_s: float = 1.0) -> MotionReport:

@@ -143,7 +143,7 @@ async def test_a_trajectory_that_starts_elsewhere_is_refused_naming_the_joint() 
     async with opened(one_arm()) as world:
         start = HOME.copy()
         start[3] += 0.2
-        with pytest.raises(RobotError, match=r"0\.200 rad from the set point of panda_joint4"):
+        with pytest.raises(RobotError, match=r"0\.2 rad from the set point of panda_joint4"):
             world.arm("left").follow(smooth(start, HOME, 1.0), tolerance=Tolerance())
 
 
