@@ -37,7 +37,7 @@ class ArmHardware(Protocol):
         ...
 
     def forget(self) -> None:
-        """Drop commands under way: the arm was moved elsewhere."""
+        """Drop pending commands: the arm was moved elsewhere."""
         ...
 
 
@@ -61,7 +61,7 @@ class IdealHardware:
         return torque_nm
 
     def forget(self) -> None:
-        """Nothing is under way."""
+        """Nothing is pending."""
 
 
 class ErroneousHardware:
@@ -90,7 +90,7 @@ class ErroneousHardware:
         offsets = np.random.default_rng(self._seed).uniform(-1.0, 1.0, 6)
         self._offset = offsets * np.repeat((realism.force_offset_n, realism.moment_offset_nm), 3)
         self._block, self._noise = -1, np.zeros((0, len(spread)))
-        self._under_way: deque[Array] = deque()
+        self._pending: deque[Array] = deque()
         self._delay_steps = round(realism.actuation_delay_s / step_s)
 
     def joints(self, position: Array, velocity: Array, *, step: int) -> tuple[Array, Array]:
@@ -109,13 +109,13 @@ class ErroneousHardware:
 
     def drive(self, torque_nm: Array) -> Array:
         """Return the torques commanded so many steps ago; the first ones act at once."""
-        under_way = self._under_way
-        under_way.append(torque_nm.copy())
-        return under_way.popleft() if len(under_way) > self._delay_steps else under_way[0]
+        pending = self._pending
+        pending.append(torque_nm.copy())
+        return pending.popleft() if len(pending) > self._delay_steps else pending[0]
 
     def forget(self) -> None:
-        """Drop commands under way."""
-        self._under_way.clear()
+        """Drop pending commands."""
+        self._pending.clear()
 
     def _noise_of(self, step: int) -> Array:
         block, row = divmod(step, _BLOCK_STEPS)
