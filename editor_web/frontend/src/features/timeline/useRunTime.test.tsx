@@ -17,8 +17,8 @@ const COURSE: LoadedTimeline = {
   marks: [],
 }
 
-function Length({ isFollowed = true }: { readonly isFollowed?: boolean }) {
-  return <output>{useRunTime(COURSE, isFollowed).toFixed(1)}</output>
+function Length({ isWatched = true }: { readonly isWatched?: boolean }) {
+  return <output>{useRunTime(COURSE, isWatched).toFixed(1)}</output>
 }
 
 beforeEach(() => vi.useFakeTimers({ toFake: ['performance', 'setInterval', 'clearInterval'] }))
@@ -43,7 +43,7 @@ it('is the length of what was recorded where no clock is known', async () => {
 
 it('stands where the run is not followed', async () => {
   live({ runs: [run({ duration_s: 12, ticking: true })] })
-  show(<Length isFollowed={false} />)
+  show(<Length isWatched={false} />)
   await act(() => vi.advanceTimersByTimeAsync(1000))
   expect(screen.getByRole('status')).toHaveTextContent('0.5')
 })

@@ -6,10 +6,10 @@ import type { LoadedTimeline } from '../../document/timeline'
 const PERIOD_MS = 100
 
 /** Seconds on the run's own clock, which stands while the run is paused; of a run that is over, or whose clock is not known, its length. */
-export function useRunTime(course: LoadedTimeline | undefined, isFollowed: boolean): number {
+export function useRunTime(course: LoadedTimeline | undefined, isWatched: boolean): number {
   const durationS = course?.durationS ?? 0
   const clock = useRunClock(course?.run)
-  const goesOn = isFollowed && course !== undefined && !course.ended && clock !== undefined
+  const goesOn = isWatched && course !== undefined && !course.ended && clock !== undefined
   const isTicking = goesOn && clock.isTicking
   const [atMs, setAt] = useState(() => performance.now())
   useEffect(() => {
