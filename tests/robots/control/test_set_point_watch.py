@@ -123,7 +123,7 @@ class JumpingJog(JointJogGenerator):
 def test_an_arm_that_may_not_jump_brakes_from_its_last_set_point_and_fails_with_the_cause() -> None:
     model = panda_model()
     control = ArmControlLoop(
-        name="left", kinematics=panda_kinematics(), inertia_kg_m2=np.ones(7), gravity_m_s2=np.zeros(3),
+        name="left", kinematics=panda_kinematics(), gravity_m_s2=np.zeros(3),
         touching=lambda: "", on_jump="stop",
     )  # fmt: skip
     control.initialize(home())
@@ -133,7 +133,7 @@ def test_an_arm_that_may_not_jump_brakes_from_its_last_set_point_and_fails_with_
     sent, velocity = [home()] * 3, np.zeros(7)
     events: list[AnyMotionEvent] = []
     for _ in range(1500):
-        control.measure(sent[-1], velocity, pull_nm=np.zeros(7), wrench=np.zeros(6), step_s=STEP_S)
+        control.measure(sent[-1], velocity, wrench=np.zeros(6), step_s=STEP_S)
         events.extend(control.advance(STEP_S))
         sent.append(control.motion.position.copy())
         velocity = (sent[-1] - sent[-2]) / STEP_S
