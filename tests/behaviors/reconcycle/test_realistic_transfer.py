@@ -15,7 +15,7 @@ from engine.skills.arm_control import ArmStatus, SetCollisionBehavior
 from tests.behaviors.application import Application, changed_cell
 from tests.tiers import nightly
 
-# About twice what typical arms feel in this transfer with 12 seeds: 3.5 N m, 1.3 N m and 9.5 N.
+# About twice what typical arms feel in this transfer with 17 seeds: 3.6 N m, 1.3 N m and 9.5 N.
 # Arms of the preset `poor` feel 10 N m by themselves and would trip.
 WATCHED = SetCollisionBehavior(torque_nm=(6.0, 6.0, 6.0, 6.0, 2.0, 2.0, 2.0), force_n=20.0)
 
