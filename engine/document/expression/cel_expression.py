@@ -319,11 +319,19 @@ def _shown(value: object) -> str:
 
 
 def _plain(value: object) -> object:
-    """Return a value in the types that CEL knows."""
-    if value is None or isinstance(value, bool | int | float | str):
+    """Return a value in the types that CEL knows.
+
+    Raises:
+        ValueError: a text contains a NUL character, at which cel-expr-python 0.1 would cut it.
+    """
+    if isinstance(value, str):
+        if "\0" in value:
+            raise ValueError(f"the text {shorten_text(repr(value))} contains a NUL character")
+        return value
+    if value is None or isinstance(value, bool | int | float):
         return value
     if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in cast("Mapping[str, object]", value).items()}
+        return {_plain(key): _plain(item) for key, item in cast("Mapping[str, object]", value).items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in cast("list[object]", value)]
     return _plain(msgspec.to_builtins(value)) if isinstance(value, msgspec.Struct) else value

@@ -190,3 +190,11 @@ def test_reserved_words_are_those_that_cannot_be_variables() -> None:
         except ExpressionError:
             continue
         assert result != "mine"
+
+
+@pytest.mark.parametrize("value", ["a\0b", ["a\0b"], {"a\0": 1}])
+def test_a_text_that_the_expression_would_read_cut_is_refused(value: object) -> None:
+    template = compile_template("${size(value) > 1}")
+    with pytest.raises(ExpressionError, match="contains a NUL character"):
+        template.evaluate({"value": value})
+    assert compile_template("${value}").evaluate({"value": value}) == value
