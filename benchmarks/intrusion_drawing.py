@@ -155,8 +155,13 @@ class IntrusionDrawer:
     ) -> Avoidability:
         rows, first, noticed = motion.joints, round(from_s / STEP_S), round(noticeable_s / STEP_S)
         last = min(noticed, len(rows) - 1)
-        # Until then nobody could know of the person; an arm that is at rest from then on could not do more.
-        if any(self._nearer(who, pose, rows[[min(first + k, last)]], than_m=CLEAR_M) for k, pose in enumerate(poses)):
+        # Until then nobody could know of the person; an arm that is at rest from then on could not do more. Both move
+        # by more than the margin within a step, so the arm is looked at a step earlier and later too.
+        at = [min(first + k, last) for k in range(len(poses))]
+        if any(
+            self._nearer(who, pose, rows[max(row - 1, 0) : row + 2], than_m=CLEAR_M)
+            for pose, row in zip(poses, at, strict=True)
+        ):
             return "nothing"
         braking = rows[last : round((noticeable_s + self._stopping_s) / STEP_S) + 1]
         if any(self._nearer(who, pose, braking, than_m=CLEAR_M) for pose in poses[noticed - first :]):

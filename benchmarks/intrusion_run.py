@@ -113,7 +113,7 @@ class IntrudedCell:
         watching = asyncio.create_task(watch.run(), name="counting contacts")
         try:
             await self.bus.clock.sleep(intrusion.after_s)
-            await self.bus.call(
+            reaching = await self.bus.call(
                 Reach(
                     person=intrusion.person,
                     hand_m=intrusion.hand_m,
@@ -122,8 +122,11 @@ class IntrudedCell:
                 ),
                 to="cell",
             )
+            arrives_s = self.bus.clock.now_s() + reaching.arrives_in_s
             ended = await self._outcome(handle, stays=intrusion.stay_s is None)
             duration_s = self.bus.clock.now_s() - started_s
+            # A hand that is called back at full speed swings past where it was to stop.
+            await self.bus.clock.sleep(max(0.0, arrives_s - self.bus.clock.now_s()))
             if not await self._cleared(handle, intrusion.person):
                 ended = _so_far(handle.feedback, "stuck")
                 handle.cancel()
@@ -236,7 +239,10 @@ class BodySpeeds:
 
 
 class _Watch:
-    """Distinguishes contacts of an arm in motion from those of one at rest."""
+    """Distinguishes contacts of an arm in motion from those of one at rest.
+
+    What counts is how fast the arm was before anything touched it: a person who walks into an arm at rest moves it.
+    """
 
     def __init__(self, cell: IntrudedCell, before: ContactCount) -> None:
         self._cell = cell
@@ -246,16 +252,17 @@ class _Watch:
 
     async def run(self) -> None:
         """Look every 10 ms, until cancelled."""
-        state, _ = await self._cell.look()
+        untouched, _ = await self._cell.look()
         while True:
             await self._cell.bus.clock.sleep(_LOOK_S)
-            # What counts is how fast the arm was before it was touched.
-            before, (state, count) = state, await self._cell.look()
+            state, count = await self._cell.look()
             started = count.contacts - self._count.contacts
             if started > 0:
-                self.in_motion += started * (_fastest_rad_s(before) > _MOVES_RAD_S)
+                self.in_motion += started * (_fastest_rad_s(untouched) > _MOVES_RAD_S)
                 touched = [other for _, other in count.pairs]
-                self.speed_m_s = max(self.speed_m_s, self._cell.body_speeds.fastest_m_s(before, touched))
+                self.speed_m_s = max(self.speed_m_s, self._cell.body_speeds.fastest_m_s(untouched, touched))
+            if count.touching_s == self._count.touching_s:
+                untouched = state
             self._count = count
 
 
