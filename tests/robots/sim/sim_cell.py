@@ -13,6 +13,7 @@ import pytest
 from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
+from robots.model.robot_model import JointLimits
 from robots.motion.min_jerk import PEAK_ACCELERATION, PEAK_SPEED
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
@@ -69,12 +70,12 @@ def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> SimScene:
     return SimScene(arms=arms, fixtures=(TABLE,), parts=parts, engine_silence_s=PATIENT_S, world_silence_s=PATIENT_S)
 
 
-def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:
-    """Return a minimum-jerk motion of a Panda between two configurations, sampled every 2 ms.
+def smooth(start: Array, goal: Array, duration_s: float, *, limits: JointLimits = PANDA.limits) -> JointTrajectory:
+    """Return a minimum-jerk motion between two configurations, sampled every 2 ms.
 
     It takes longer where the limits of the arm need more time.
     """
-    duration_s = max(duration_s, _least_s(np.abs(goal - start)))
+    duration_s = max(duration_s, _least_s(np.abs(goal - start), limits))
     u = np.linspace(0.0, 1.0, round(duration_s / 0.002) + 1)[:, None]
     return JointTrajectory(
         dt_s=0.002,
@@ -83,17 +84,19 @@ def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:
     )
 
 
-def _least_s(span_rad: Array) -> float:
-    limits = PANDA.limits
+def _least_s(span_rad: Array, limits: JointLimits) -> float:
     speed = PEAK_SPEED * span_rad / np.array(limits.velocity_rad_s)
     push = PEAK_ACCELERATION * span_rad / np.array(limits.acceleration_rad_s2)
     jerk = _PEAK_JERK * span_rad / np.array(limits.jerk_rad_s3)
     return float(np.maximum(np.maximum(speed, np.sqrt(push)), np.cbrt(jerk)).max())
 
 
-async def move(arm: ArmPort, goal: Array, duration_s: float = 1.0) -> MotionReport:
+async def move(
+    arm: ArmPort, goal: Array, duration_s: float = 1.0, *, limits: JointLimits = PANDA.limits
+) -> MotionReport:
     """Go from the set point to `goal` and return the report."""
-    motion = arm.follow(smooth(np.asarray(arm.sample().desired_rad), goal, duration_s), tolerance=Tolerance())
+    path = smooth(np.asarray(arm.sample().desired_rad), goal, duration_s, limits=limits)
+    motion = arm.follow(path, tolerance=Tolerance())
     return await motion.report()
 
 

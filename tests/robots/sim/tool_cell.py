@@ -56,7 +56,7 @@ class Reach:
 
     async def joints(self, goal: Array, *, duration_s: float = 1.0) -> MotionReport:
         """Move to a configuration."""
-        return await move(self.port, goal, duration_s)
+        return await move(self.port, goal, duration_s, limits=self._kinematics.limits)
 
     def in_tool(self, part: str) -> tuple[Array, Rotation]:
         """Return where a part is and how it is turned, as seen from the measured tool."""

@@ -10,6 +10,7 @@ import pytest
 from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.messages import JointState, Pose
+from robots.model.registry import model_by_name
 from robots.port import Tolerance
 from robots.scene.sim_scene import ArmPlacement, SimScene
 from tests.robots.sim.sim_cell import opened, smooth
@@ -31,7 +32,10 @@ async def test_a_coupled_axis_is_shown_as_its_controller_counts_it_position_spee
         world.register(bus)
         arm = world.arm("arm")
         start = arm.sample().desired_rad
-        arm.follow(smooth(start, start + np.array((0.0, 0.3, 0.1, 0.0, 0.0, 0.0)), 2.0), tolerance=Tolerance())
+        path = smooth(
+            start, start + np.array((0.0, 0.3, 0.1, 0.0, 0.0, 0.0)), 2.0, limits=model_by_name("irb4600").limits
+        )
+        arm.follow(path, tolerance=Tolerance())
         await asyncio.sleep(1.0)
         joints = bus.topic("arm/joint_state", JointState).latest
         device = bus.topic("arm/device_joints", JointState).latest
