@@ -14,7 +14,6 @@ from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
 from robots.control.collision_reflex import CollisionReflex
 from robots.control.generators.motion_generator import MotionGenerator
-from robots.control.kernels import add_feedforward
 from robots.control.laws.cartesian_impedance import CartesianImpedance
 from robots.control.laws.controller import Controller
 from robots.control.laws.gravity_compensation import GravityCompensation
@@ -60,6 +59,8 @@ class ArmControlLoop:
         touching: Callable[[], str],
         on_jump: Literal["report", "stop"] = "report",
     ) -> None:
+        from robots.control import kernels
+
         model, limits = kinematics.model, kinematics.limits
         self.name = name
         self.settings = ControlSettings()
@@ -72,6 +73,7 @@ class ArmControlLoop:
         self._dynamics = dynamics = ArmDynamics(model, base=kinematics.base, gravity_m_s2=gravity_m_s2)
         # Determines the joint damping.
         self._inertia = np.diag(dynamics.mass_matrix(np.array(model.home_rad))).copy()
+        self._add_feedforward = kernels.add_feedforward
         self._feedforward_nm = np.zeros(model.dof)
         self._observer = MomentumObserver(model.dof)
         self._limit_nm = np.array(limits.effort_nm)
@@ -210,7 +212,7 @@ class ArmControlLoop:
         bias_nm = dynamics.bias(state.position, state.velocity)
         feedforward_nm = self._feedforward_nm
         damping, acceleration = dynamics.damping_nms_rad, motion.acceleration
-        add_feedforward(mass, bias_nm, state.velocity, acceleration, damping, feedforward_nm)
+        self._add_feedforward(mass, bias_nm, state.velocity, acceleration, damping, feedforward_nm)
         bearing_nm = feedforward_nm
         if not self._load.none:
             bearing_nm = feedforward_nm + self._load.bearing_nm(acceleration)

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from robots.control.kernels import observe_momentum
 from robots.port import Array
 
 OBSERVER_GAIN_1_S = 2.0 * math.pi * 60.0
@@ -34,6 +33,9 @@ class MomentumObserver:
     """
 
     def __init__(self, dof: int, *, gain_1_s: float = OBSERVER_GAIN_1_S) -> None:
+        from robots.control import kernels
+
+        self._observe = kernels.observe_momentum
         self.external_nm: Array = np.zeros(dof)
         """The estimate, (n,); always the same array."""
         self._gain_1_s = gain_1_s
@@ -74,5 +76,5 @@ class MomentumObserver:
         if load_nm is not None:
             self._known_nm += load_nm
         share = 1.0 - math.exp(-self._gain_1_s * step_s)
-        observe_momentum(self._mass, self._velocity, velocity, self._known_nm, step_s, share, self.external_nm)
+        self._observe(self._mass, self._velocity, velocity, self._known_nm, step_s, share, self.external_nm)
         self._commanded = False

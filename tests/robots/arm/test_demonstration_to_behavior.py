@@ -31,6 +31,7 @@ from engine.teaching import HelpingHand
 from robots.port import Array
 from tests.robots.arm.simulated import HOME, Simulated, simulated
 
+GATHERS_PACE_S = 0.07
 RAISED = JointTrapVel(joints=(*HOME.joints[:3], HOME.joints[3] + 0.3, *HOME.joints[4:]), speed=0.5)
 
 
@@ -91,12 +92,16 @@ async def carried_out(cell: Simulated, goal: JointDMP) -> tuple[list[float], lis
 async def tool_rms_m(
     cell: Simulated, shown: Trajectory, start_s: float, times: list[float], joints: list[tuple[float, ...]]
 ) -> float:
-    """How far the tool was off the demonstration (RMS), of which its controller is some milliseconds behind."""
+    """How far the tool was off the demonstration (RMS).
+
+    Its controller is some milliseconds behind, and a primitive that begins with a push gathers pace within the jerk
+    limits, by which the rest of it comes up to `GATHERS_PACE_S` later.
+    """
     due_s = np.array(shown.times_s) - start_s
     wanted: Array = np.array(shown.joints)
     made: Array = np.array([await place(cell, one) for one in joints])
     rms: list[float] = []
-    for late_s in (0.0, 0.002, 0.004, 0.006, 0.008):
+    for late_s in np.arange(0.0, GATHERS_PACE_S, 0.002).tolist():
         within = [index for index, time_s in enumerate(times) if 0.0 <= time_s - late_s <= due_s[-1]]
         then = [[float(np.interp(times[index] - late_s, due_s, wanted[:, n])) for n in range(7)] for index in within]
         should: Array = np.array([await place(cell, tuple(one)) for one in then])

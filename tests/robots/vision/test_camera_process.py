@@ -79,8 +79,10 @@ def test_faults_conditions_and_observed_space_cross_the_process_border() -> None
     assert seen.observed is not None
     assert blind.observed is not None
     assert min(seen.observed.ages) == 0
-    # What was seen 1.5 s ago is as old; the dark image has shown nothing.
-    assert set(blind.observed.ages) == {0, 15, NEVER_SEEN}
+    # What was seen 1.5 s ago is as old, and what was not has not been shown by the dark image; around the arm all is
+    # known. How much one image shows depends on the renderer.
+    changed = set(zip(seen.observed.ages, blind.observed.ages, strict=True))
+    assert {(0, 15), (0, 0)} <= changed <= {(0, 15), (0, 0), (NEVER_SEEN, NEVER_SEEN)}
 
 
 def test_what_the_process_sees_is_what_is_there() -> None:

@@ -22,11 +22,20 @@ export function wallTime(secondsSince1970: number, now: Date = new Date()): stri
 
 type Started = Pick<RunView, 'id' | 'behavior' | 'started_at_s'>
 
-/** When a run was started, to the hundredth where another one of its behavior was started in the same second. */
+/** Digits of a second: as many as tell a run from each other one of its behavior. */
+const DIGITS = [0, 2, 3, 6]
+
+/** When a run was started, to as many digits of the second as distinguish it from the others of its behavior. */
 export function startTime(run: Started, among: readonly Started[]): string {
-  const start = wallTime(run.started_at_s)
-  const hasTwin = among.some((each) => each.id !== run.id && each.behavior === run.behavior && wallTime(each.started_at_s) === start)
-  return hasTwin ? `${start}.${pad(Math.floor((run.started_at_s % 1) * 100))}` : start
+  const others = among.filter((each) => each.id !== run.id && each.behavior === run.behavior)
+  const digits = DIGITS.find((many) => others.every((each) => preciseTime(each, many) !== preciseTime(run, many)))
+  return preciseTime(run, digits ?? Math.max(...DIGITS))
+}
+
+function preciseTime({ started_at_s }: Started, digits: number): string {
+  const start = wallTime(started_at_s)
+  if (digits === 0) return start
+  return `${start}.${String(Math.floor((started_at_s % 1) * 10 ** digits)).padStart(digits, '0')}`
 }
 
 function pad(part: number): string {
