@@ -35,7 +35,9 @@ export function startTime(run: Started, among: readonly Started[]): string {
 function preciseTime({ started_at_s }: Started, digits: number): string {
   const start = wallTime(started_at_s)
   if (digits === 0) return start
-  return `${start}.${String(Math.floor((started_at_s % 1) * 10 ** digits)).padStart(digits, '0')}`
+  // The clock of the server has microseconds.
+  const micros = Math.min(Math.round((started_at_s % 1) * 1e6), 999_999)
+  return `${start}.${String(micros).padStart(6, '0').slice(0, digits)}`
 }
 
 function pad(part: number): string {
