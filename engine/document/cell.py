@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -312,25 +313,9 @@ def _require_world(document: CellDocument, source: DocumentSource) -> None:
 
 
 def _require_people(document: CellDocument, source: DocumentSource) -> None:
-    taken = {
-        **dict.fromkeys(document.parts, "part"),
-        **dict.fromkeys(document.fixtures, "fixture"),
-        **dict.fromkeys(document.robots, "robot"),
-    }
     for name, person in document.people.items():
         path: DataPath = ("people", name)
-        if document.world is None:
-            raise DocumentError(
-                f"person `{name}` is simulated, but the cell has no world",
-                where=source.position(path, of_key=True),
-                hint="add `world: {kind: mujoco}`",
-            )
-        if name in taken:
-            raise DocumentError(
-                f"`{name}` is both a person and a {taken[name]}",
-                where=source.position(path, of_key=True),
-                hint="rename one",
-            )
+        _require_simulated(document, source, path, noun="person", taken=_bodies(document))
         least_m, greatest_m = person.reach_m
         away_m = math.dist(person.shoulder, person.hand_rests)
         if not least_m <= away_m <= greatest_m:
@@ -342,26 +327,38 @@ def _require_people(document: CellDocument, source: DocumentSource) -> None:
 
 
 def _require_unknown_bodies(document: CellDocument, source: DocumentSource) -> None:
-    taken = {
+    taken = {**_bodies(document), **dict.fromkeys(document.people, "person")}
+    for name in document.unknown_bodies:
+        _require_simulated(document, source, ("unknown_bodies", name), noun="unknown body", taken=taken)
+
+
+def _bodies(document: CellDocument) -> dict[str, str]:
+    """Return what has each name in the world."""
+    return {
         **dict.fromkeys(document.parts, "part"),
         **dict.fromkeys(document.fixtures, "fixture"),
         **dict.fromkeys(document.robots, "robot"),
-        **dict.fromkeys(document.people, "person"),
     }
-    for name in document.unknown_bodies:
-        path: DataPath = ("unknown_bodies", name)
-        if document.world is None:
-            raise DocumentError(
-                f"unknown body `{name}` is simulated, but the cell has no world",
-                where=source.position(path, of_key=True),
-                hint="add `world: {kind: mujoco}`",
-            )
-        if name in taken:
-            raise DocumentError(
-                f"`{name}` is both an unknown body and a {taken[name]}",
-                where=source.position(path, of_key=True),
-                hint="rename one",
-            )
+
+
+def _require_simulated(
+    document: CellDocument, source: DocumentSource, path: DataPath, *, noun: str, taken: Mapping[str, str]
+) -> None:
+    """Require a world for what only simulation has, and a name of its own in it."""
+    name = str(path[-1])
+    if document.world is None:
+        raise DocumentError(
+            f"{noun} `{name}` is simulated, but the cell has no world",
+            where=source.position(path, of_key=True),
+            hint="add `world: {kind: mujoco}`",
+        )
+    if name in taken:
+        article = "an" if noun[0] in "aeiou" else "a"
+        raise DocumentError(
+            f"`{name}` is both {article} {noun} and a {taken[name]}",
+            where=source.position(path, of_key=True),
+            hint="rename one",
+        )
 
 
 def _require_regions(document: CellDocument, source: DocumentSource) -> None:

@@ -56,6 +56,8 @@ class OccupancyGrid(Message, frozen=True, kw_only=True):
 
 NEVER_SEEN, LONG_UNSEEN = 255, 254
 """Ages in `ObservedSpace`: never seen, and seen so long ago that the age does not fit."""
+AGES_PER_S = 10
+"""Ages are in tenths of a second."""
 
 
 class ObservedSpace(Message, frozen=True, kw_only=True):
@@ -72,6 +74,11 @@ class ObservedSpace(Message, frozen=True, kw_only=True):
     shape: tuple[int, int, int]
     limit_s: float
     ages: bytes
+
+    @property
+    def greatest_known_age(self) -> int:
+        """The age, as in `ages`, beyond which a voxel is unknown."""
+        return min(round(AGES_PER_S * self.limit_s), LONG_UNSEEN - 1)
 
 
 class CameraInfo(Message, frozen=True, kw_only=True):

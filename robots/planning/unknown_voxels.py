@@ -6,11 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.errors import CellError
-from engine.messages.sensing import LONG_UNSEEN, ObservedSpace
+from engine.messages.sensing import ObservedSpace
 from robots.planning.swept_space import CoverRegion
-
-TENTHS = 10.0
-"""Ages per second."""
 
 
 def unknown_voxels(observed: ObservedSpace, regions: tuple[CoverRegion, ...] = ()) -> NDArray[np.uint8]:
@@ -26,8 +23,7 @@ def unknown_voxels(observed: ObservedSpace, regions: tuple[CoverRegion, ...] = (
             where="occupancy",
             hint="give one byte per voxel",
         )
-    limit = min(round(TENTHS * observed.limit_s), LONG_UNSEEN - 1)
-    unknown = (ages > limit).astype(np.uint8).reshape(observed.shape)
+    unknown = (ages > observed.greatest_known_age).astype(np.uint8).reshape(observed.shape)
     if not regions:
         return unknown
     counted = np.zeros_like(unknown)

@@ -6,13 +6,13 @@ import logging
 import math
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
 
 from editor_web.cell_view.rendering.canvas import Canvas
-from editor_web.cell_view.rendering.colours import Stops, ramp
+from editor_web.cell_view.rendering.colours import ramp
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
+from editor_web.cell_view.rendering.voxel_squares import VoxelSquares
 from engine.messages.sensing import OccupancyGrid
 
 _log = logging.getLogger("flexcell.cell_view")
@@ -54,10 +54,8 @@ class VoxelLayer:
     """Draws the latest grid on changes, at most ten times a second; grey if it is out of date."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
-        self._server = server
-        self._node = f"{root_of('voxels', under=under)}/occupied"
+        self._squares = VoxelSquares(server, f"{root_of('voxels', under=under)}/occupied", share=_POINT_SHARE)
         self._drawn: tuple[OccupancyGrid, bool] | None = None
-        self._handle: viser.PointCloudHandle | None = None
         self._next_s = 0.0
 
     def draw(self, latest: LatestMessages, now_s: float) -> float | None:
@@ -74,21 +72,7 @@ class VoxelLayer:
         except ValueError as error:
             _log.warning("the occupancy is not drawn: %s", error)
             return None
-        self._show(grid, places, stops=_STALE if is_stale else _HEIGHTS)
-        return None
-
-    def _show(self, grid: OccupancyGrid, places: NDArray[np.int64], *, stops: Stops) -> None:
-        points = (places.astype(np.float32) + 0.5) * np.float32(grid.voxel_m)
+        stops = _STALE if is_stale else _HEIGHTS
         shades = ramp(stops, np.linspace(0.0, 1.0, max(1, grid.shape[2])))[places[:, 2]]
-        with self._server.atomic():
-            if self._handle is None:
-                # Squares, not cubes: with software rendering, a browser draws six times as many.
-                self._handle = self._server.scene.add_point_cloud(
-                    self._node, points=points, colors=shades, point_shape="square", precision="float16"
-                )
-            else:
-                self._handle.points = points
-                self._handle.colors = shades
-            self._handle.point_size = grid.voxel_m * _POINT_SHARE
-            self._handle.position = grid.corner_m
-            self._handle.visible = len(points) > 0
+        self._squares.show(places, shades, voxel_m=grid.voxel_m, corner_m=grid.corner_m)
+        return None

@@ -6,14 +6,14 @@ import logging
 import math
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
 
 from editor_web.cell_view.layers.occupancy import surface
 from editor_web.cell_view.rendering.canvas import Canvas
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
-from engine.messages.sensing import LONG_UNSEEN, ObservedSpace
+from editor_web.cell_view.rendering.voxel_squares import VoxelSquares
+from engine.messages.sensing import ObservedSpace
 
 _log = logging.getLogger("flexcell.cell_view")
 PERIOD_S = 0.5
@@ -31,18 +31,16 @@ def unknown(space: ObservedSpace) -> NDArray[np.bool_]:
     ages = np.frombuffer(space.ages, dtype=np.uint8)
     if min(space.shape) < 0 or len(ages) != math.prod(space.shape):
         raise ValueError(f"{len(ages)} bytes do not match a map of {space.shape} voxels")
-    return (ages > min(round(10.0 * space.limit_s), LONG_UNSEEN - 1)).reshape(space.shape)
+    return (ages > space.greatest_known_age).reshape(space.shape)
 
 
 class UnknownSpaceLayer:
     """Draws the unknown voxels on changes, at most twice a second."""
 
     def __init__(self, server: Canvas, *, under: str = "") -> None:
-        self._server = server
-        self._node = f"{root_of('voxels', under=under)}/unknown"
+        self._squares = VoxelSquares(server, f"{root_of('voxels', under=under)}/unknown", share=_POINT_SHARE)
         self._drawn: ObservedSpace | None = None
         self._shown: NDArray[np.bool_] | None = None
-        self._handle: viser.PointCloudHandle | None = None
         self._next_s = 0.0
 
     def draw(self, latest: LatestMessages, now_s: float) -> float | None:
@@ -60,20 +58,7 @@ class UnknownSpaceLayer:
             return None
         if self._shown is None or not np.array_equal(places, self._shown):
             self._shown = places
-            self._show(space, np.argwhere(surface(places)))
+            surfaces = np.argwhere(surface(places))
+            shades = np.tile(np.array(_COLOUR, dtype=np.uint8), (len(surfaces), 1))
+            self._squares.show(surfaces, shades, voxel_m=space.voxel_m, corner_m=space.corner_m)
         return None
-
-    def _show(self, space: ObservedSpace, places: NDArray[np.int64]) -> None:
-        points = (places.astype(np.float32) + 0.5) * np.float32(space.voxel_m)
-        shades = np.tile(np.array(_COLOUR, dtype=np.uint8), (len(points), 1))
-        with self._server.atomic():
-            if self._handle is None:
-                self._handle = self._server.scene.add_point_cloud(
-                    self._node, points=points, colors=shades, point_shape="square", precision="float16"
-                )
-            else:
-                self._handle.points = points
-                self._handle.colors = shades
-            self._handle.point_size = space.voxel_m * _POINT_SHARE
-            self._handle.position = space.corner_m
-            self._handle.visible = len(points) > 0

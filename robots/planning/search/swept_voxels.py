@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from engine.messages import Vector3
-from engine.messages.sensing import NEVER_SEEN
+from engine.messages.sensing import AGES_PER_S, NEVER_SEEN
 from robots.planning.scene.compiled_problem import CompiledProblem
 from robots.planning.search.path_check import require_fit
 from robots.planning.search.swept_voxel_kernels import sweep
 from robots.planning.swept_space import CoverRegion, SweptSpace, SweptSpaceRequest
-from robots.planning.unknown_voxels import TENTHS, unknown_voxels
+from robots.planning.unknown_voxels import unknown_voxels
 from robots.port import Array
 
 _STEP_VOXELS = 0.75
@@ -47,7 +47,7 @@ def swept_space(request: SweptSpaceRequest, problem: CompiledProblem) -> SweptSp
         unknown_m3=count * observed.voxel_m**3,
         first_m=_point(centres[0]),
         at_s=float(at_row[0]) * trajectory.dt_s,
-        age_s=None if age == NEVER_SEEN else age / TENTHS,
+        age_s=None if age == NEVER_SEEN else age / AGES_PER_S,
         low_m=_point(centres.min(axis=0) - observed.voxel_m / 2.0),
         high_m=_point(centres.max(axis=0) + observed.voxel_m / 2.0),
         regions=tuple(region.name for region in request.regions if _holds(region, centres)),

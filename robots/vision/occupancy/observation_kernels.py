@@ -5,13 +5,14 @@ Voxels and cameras are as in `occupancy_kernels`. Times are in hundredths of a s
 
 from __future__ import annotations
 
+from engine.messages.sensing import LONG_UNSEEN, NEVER_SEEN
 from robots.compiled import compiled
 from robots.port import Array
 from robots.vision.cameras.camera import Image
 from robots.vision.occupancy.occupancy_kernels import Bytes, Counts
 
 NEVER = -1
-_TENTH, _LONG, _NEVER_SEEN = 10, 254, 255
+_TENTH = 10
 
 
 @compiled()
@@ -65,6 +66,6 @@ def write_ages(seen: Counts, taken: Bytes, now: int, ages: Bytes) -> None:
         if taken[i] != 0:
             ages[i] = 0
         elif seen[i] < 0:
-            ages[i] = _NEVER_SEEN
+            ages[i] = NEVER_SEEN
         else:
-            ages[i] = min(max((now - seen[i]) // _TENTH, 0), _LONG)
+            ages[i] = min(max((now - seen[i]) // _TENTH, 0), LONG_UNSEEN)
