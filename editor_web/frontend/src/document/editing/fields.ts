@@ -5,7 +5,7 @@ import { isJson } from '../schema'
 
 export type Schema = Dict<unknown>
 
-export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'record' | 'data'
+export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'record' | 'list' | 'data'
 
 export interface EditField {
   readonly name: string
@@ -74,7 +74,11 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
         depth + 1,
       ),
     )
-  const item = schema['type'] === 'array' && depth < DEEPEST ? record(schema['items']) : {}
+  const listed = schema['type'] === 'array' && depth < DEEPEST ? record(schema['items']) : {}
+  const item =
+    '$ref' in listed || 'properties' in listed
+      ? fieldFrom({ name: '', required: true, default: null, schema: listed }, definitions, depth + 1)
+      : undefined
   const newEntry = text(combined['new_entry']) || text(combined['new_entry_of'])
   const label = text(combined['cell_label'])
   return {
@@ -84,6 +88,7 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
       hasChoices: choices.length > 0,
       isVector: parts.length > 0,
       isRecord: inner.length > 0,
+      isList: item?.kind === 'record',
     }),
     description: text(combined['description']),
     unit: text(combined['unit']),
@@ -105,10 +110,7 @@ function fieldFrom(key: KeyView, definitions: Schema, depth: number): EditField 
     jointsOf,
     measuredOn: text(combined['measured_on']),
     properties: inner,
-    item:
-      '$ref' in item || 'properties' in item
-        ? fieldFrom({ name: '', required: true, default: null, schema: item }, definitions, depth + 1)
-        : undefined,
+    item,
     fallback: key.default,
   }
 }
@@ -160,6 +162,7 @@ function kindOf(schema: Schema, is: Dict<boolean>): EditFieldKind {
   if (is['hasChoices']) return 'choice'
   if (is['isVector']) return 'vector'
   if (is['isRecord']) return 'record'
+  if (is['isList']) return 'list'
   const type = schema['type']
   if (type === 'number' || type === 'integer' || type === 'boolean') return type
   return type === 'string' ? 'text' : 'data'

@@ -95,6 +95,6 @@ it('is what the type of a list of waypoints is taught with', () => {
   }
   const schema = { $defs: { Target: target, Waypoint: waypoint }, type: 'array', items: { $ref: '#/$defs/Waypoint' } }
   const field = editFieldOf({ name: 'waypoints', required: true, default: null, schema })
-  expect([field.kind, wizardOf(field)]).toEqual(['data', 'waypoints'])
+  expect([field.kind, wizardOf(field)]).toEqual(['list', 'waypoints'])
   expect(wizardOf(editFieldOf({ name: 'x', required: true, default: null, schema: { type: 'array', items: target } }))).toBeUndefined()
 })

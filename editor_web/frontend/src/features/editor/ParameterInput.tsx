@@ -14,9 +14,11 @@ import {
   type EditField,
 } from '../../document/editing/fields'
 import { offersOf, unknownName, type Surroundings } from '../../document/editing/offers'
+import { waypointWords } from '../../document/editing/waypoints'
 import { plainText } from '../../document/values'
 import { Words } from '../../components/Words'
 import { EntryDetails } from './EntryDetails'
+import { RecordList } from './RecordList'
 import { TemplateInput } from './TemplateInput'
 
 export interface ParameterInputProps {
@@ -76,6 +78,8 @@ export function ParameterInput(props: ParameterInputProps) {
       return <VectorInput label={label} field={field} value={value} onSet={onSet} />
     case 'record':
       return <RecordInput {...props} label={label} />
+    case 'list':
+      return <ListInput {...props} label={label} />
     case 'entry':
       return <EntryInput {...props} shared={shared} label={label} />
     default:
@@ -125,23 +129,57 @@ function VectorInput({ label, field, value, onSet }: VectorProps) {
   )
 }
 
+/** A list of values with fields; as text where it is something else. */
+function ListInput({ field, value, around, label, hintId, onSet }: ParameterInputProps & { readonly label: string }) {
+  const { item } = field
+  const given = value ?? field.fallback ?? NOTHING
+  if (!item || !Array.isArray(given)) return <DataInput label={label} hintId={hintId} value={value} onSet={onSet} />
+  const items: readonly unknown[] = given
+  return (
+    <RecordList label={label} items={items} words={(each) => waypointWords({ value: each, place: undefined })} onSet={onSet}>
+      {(at) => (
+        <RecordInput
+          field={item}
+          value={items[at]}
+          isFree={false}
+          isInvalid={false}
+          around={around}
+          label={`${label} ${at}`}
+          hintId={hintId}
+          onSet={(next) => onSet(items.with(at, next ?? {}))}
+        />
+      )}
+    </RecordList>
+  )
+}
+
+interface DataProps {
+  readonly label: string
+  readonly hintId: string
+  readonly value: unknown
+  readonly onSet: (value: unknown) => void
+}
+
+/** A value of another type than the one of its field. */
+function DataInput({ label, hintId, value, onSet }: DataProps) {
+  return (
+    <TemplateInput
+      label={label}
+      isMono
+      isLong
+      isInvalid
+      describedBy={hintId}
+      value={shownValue(value)}
+      onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))}
+    />
+  )
+}
+
 /** A value with fields: each of them in the input that fits it. */
 function RecordInput({ field, value, around, label, hintId, onSet }: ParameterInputProps & { readonly label: string }) {
   const [isOpened, setOpened] = useState(false)
   const given = recordOf(value)
-  if (value !== undefined && value !== null && !given) {
-    return (
-      <TemplateInput
-        label={label}
-        isMono
-        isLong
-        isInvalid
-        describedBy={hintId}
-        value={shownValue(value)}
-        onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))}
-      />
-    )
-  }
+  if (value !== undefined && value !== null && !given) return <DataInput label={label} hintId={hintId} value={value} onSet={onSet} />
   if (!given && !isOpened) {
     return (
       <Button

@@ -24,6 +24,9 @@ const TARGET = key('target', {
     frame: { type: 'string', cell_name: 'frame', default: 'world' },
   },
 })
+const JOINTS = { anyOf: [{ type: 'array', items: NUMBER, joints_of: 'robot' }, { type: 'null' }] }
+const WAYPOINT = { type: 'object', properties: { joints: JOINTS, pose: TARGET.schema, blend_m: NUMBER } }
+const WAYPOINTS = key('waypoints', { type: 'array', items: WAYPOINT })
 const FORCE = key('force_n', { ...NUMBER, unit: 'N', measured_on: 'wrench' })
 const CATALOGUE: CatalogueBody = {
   states: [],
@@ -104,9 +107,7 @@ it('opens the wizard that the type of a value has, for the arm of the state', as
 })
 
 it('opens the wizard of waypoints with the entries that may be some', async () => {
-  const joints = { anyOf: [{ type: 'array', items: NUMBER, joints_of: 'robot' }, { type: 'null' }] }
-  const item = { type: 'object', properties: { joints, pose: TARGET.schema, blend_m: NUMBER } }
-  const user = fields({ robot: 'left', waypoints: [{ pose: { entry: 'tray' } }] }, key('waypoints', { type: 'array', items: item }))
+  const user = fields({ robot: 'left', waypoints: [{ pose: { entry: 'tray' } }] }, WAYPOINTS)
   await user.click(screen.getByLabelText('Teach waypoints'))
   const { asked } = useWizard.getState()
   expect(asked).toMatchObject({
@@ -117,6 +118,32 @@ it('opens the wizard of waypoints with the entries that may be some', async () =
   })
   asked?.onSet([{ joints: [0, 1] }])
   await waitFor(() => expect(edits()).toMatchObject([{ name: 'waypoints', value: [{ joints: [0, 1] }] }]))
+})
+
+const LISTED = [{ pose: { entry: 'tray' } }, { joints: [0, 1], blend_m: 0.1 }]
+
+it('edits a waypoint field by field', async () => {
+  const user = fields({ waypoints: LISTED }, WAYPOINTS)
+  expect(screen.queryByLabelText('waypoints 1 blend_m')).toBeNull()
+  await user.click(screen.getByText('1: joints 0.00, 1.00'))
+  await user.clear(screen.getByLabelText('waypoints 1 blend_m'))
+  await user.type(screen.getByLabelText('waypoints 1 blend_m'), '0.05{Enter}')
+  await waitFor(() => expect(edits()).toMatchObject([{ name: 'waypoints', value: [LISTED[0], { joints: [0, 1], blend_m: 0.05 }] }]))
+})
+
+it.each([
+  ['Move waypoints 1 up', [LISTED[1], LISTED[0]]],
+  ['Delete waypoints 0', [LISTED[1]]],
+  ['Add one to waypoints', [...LISTED, {}]],
+])('has a button %s', async (label, value) => {
+  const user = fields({ waypoints: LISTED }, WAYPOINTS)
+  await user.click(screen.getByLabelText(label))
+  await waitFor(() => expect(edits()).toEqual([{ edit: 'set_parameter', path: 'root/go', name: 'waypoints', value }]))
+})
+
+it('shows what is no list of waypoints as it is written', () => {
+  fields({ waypoints: { entry: 'tray' } }, WAYPOINTS)
+  expect(screen.getByLabelText('waypoints')).toHaveValue('{"entry":"tray"}')
 })
 
 it('shows the force that the arm measures beside the one that is set', async () => {
