@@ -36,6 +36,11 @@ export function plainText(value: unknown): string {
   return typeof value === 'string' ? value : (JSON.stringify(value) ?? '')
 }
 
+/** Text of a source file with its paragraphs and lists, and without the ends of its lines. */
+export function flowing(text: string): string {
+  return text.replaceAll(/(\S)[ \t]*\n(?!\s*(?:\n|[-*] ))\s*/g, '$1 ')
+}
+
 /** A number with at most five significant digits behind the point. */
 export function numeral(value: number): string {
   if (Number.isInteger(value)) return String(value)

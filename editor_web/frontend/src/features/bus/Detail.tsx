@@ -1,7 +1,9 @@
 /** The frame of what is shown of one entry: its name, what it is for, and the way back where there is little room. */
-import { ActionIcon, Code, Group, Stack, Text, Title } from '@mantine/core'
+import { ActionIcon, Group, Stack, Text, Title } from '@mantine/core'
 import { IconArrowLeft } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
+import { Words } from '../../components/Words'
+import { flowing } from '../../document/values'
 import classes from './bus.module.css'
 
 interface DetailProps {
@@ -36,18 +38,13 @@ export function Detail({ name, type, doc, onBack, children }: DetailProps) {
         </Group>
         {doc && (
           <Text fz="0.8rem" style={{ whiteSpace: 'pre-line' }}>
-            {inCode(doc)}
+            <Words text={flowing(doc)} />
           </Text>
         )}
         {children}
       </Stack>
     </section>
   )
-}
-
-/** Names between backticks as code. */
-function inCode(doc: string): ReactNode {
-  return doc.split('`').map((part, index) => (index % 2 === 1 ? <Code key={index}>{part}</Code> : part))
 }
 
 /** Why something cannot be sent, or what it may do. */

@@ -7,6 +7,7 @@ import { setField } from '../../document/editing/edits'
 import { enclosingReference } from '../../document/editing/referenceInlining'
 import { kindLabel } from '../../document/tree'
 import { nameOfPath, parentPath } from '../../document/path'
+import { flowing } from '../../document/values'
 import { Words } from '../../components/Words'
 import { perform } from './apply'
 import { openReferred } from './pageActions'
@@ -80,7 +81,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
           />
           {state && (
             <FormWords>
-              <Words text={state.doc} />
+              <Words text={flowing(state.doc)} />
             </FormWords>
           )}
           {node.document && (
