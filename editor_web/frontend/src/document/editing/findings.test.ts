@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import type { FindingView } from '../../api/types'
-import { emptyContainers, problemsOf, sameFindings } from './findings'
+import { emptyContainers, problemsOf, sameFindings, unfinishedWords } from './findings'
 import type { EditNode } from './model'
 
 const at = (line: number, code: string): FindingView => ({
@@ -38,4 +38,14 @@ test('a container that is being built has no problems until something is in it',
   expect([...emptyContainers(empty)]).toEqual(['root'])
   expect(codes(empty)).toEqual(['unknown-state'])
   expect(codes({ ...empty, children: [child] })).toEqual(['invalid-document', 'unknown-state'])
+})
+
+test('what is left to do says how many containers are empty', () => {
+  const root = (kind: string, children: EditNode[] = [], path = 'root') => ({ path, kind, children }) as unknown as EditNode
+  expect(unfinishedWords(undefined)).toBe('')
+  expect(unfinishedWords(root('state'))).toBe('')
+  expect(unfinishedWords(root('machine'))).toBe('A container is empty: add a node to it.')
+  expect(unfinishedWords(root('machine', [root('machine', [], 'root/a'), root('sequence', [], 'root/b')]))).toBe(
+    '2 containers are empty: add a node to each.',
+  )
 })

@@ -31,7 +31,19 @@ export function emptyContainers(root: EditNode | undefined): ReadonlySet<string>
   return new Set(empty.map((node) => node.path))
 }
 
+/** What is left to do in a document that is not finished; empty for a finished one. */
+export function unfinishedWords(root: EditNode | undefined): string {
+  const empty = emptyContainers(root).size
+  if (empty === 0) return ''
+  return empty === 1 ? 'A container is empty: add a node to it.' : `${empty} containers are empty: add a node to each.`
+}
+
 /** Those of before where they say the same, so that nothing is drawn again for them. */
 export function sameFindings(before: Findings | undefined, findings: Findings): Findings {
   return before && JSON.stringify(before) === JSON.stringify(findings) ? before : findings
+}
+
+/** Whether a finding keeps a document from being run. */
+export function isError({ severity }: FindingView): boolean {
+  return severity === 'error'
 }

@@ -29,7 +29,8 @@ export function CellFrame() {
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
     <Box pos="relative" w="100%" h="100%" data-shows={isPast ? 'past' : 'present'}>
-      {/* It has an origin of its own in the place of a sandbox; see decision 0029. */}
+      {/* It has an origin of its own in the place of a sandbox; see decision 0029. With the scheme of its document, which
+          names none, it lets its background through while that loads. */}
       <Box
         component="iframe"
         display="block"
@@ -37,6 +38,7 @@ export function CellFrame() {
         h="100%"
         bd={0}
         bg="var(--canvas)"
+        style={{ colorScheme: 'light' }}
         key={`${scheme}${generation}`}
         ref={frame}
         title="3D view of the cell"

@@ -13,7 +13,7 @@ import {
 } from '@tabler/icons-react'
 import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon } from '../../components/StatusIcon'
-import { problemsOf } from '../../document/editing/findings'
+import { isError, problemsOf, unfinishedWords } from '../../document/editing/findings'
 import { canRedo, canUndo } from '../../document/editing/history'
 import { nameOfPath } from '../../document/path'
 import { redo, undo } from './apply'
@@ -130,22 +130,25 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
   )
 }
 
-const LOOKS = { failed: 'var(--failed)', warning: 'var(--stopped)', done: 'dimmed' }
+const LOOKS = { failed: 'var(--failed)', warning: 'var(--stopped)', idle: 'dimmed', done: 'dimmed' }
 
 function ProblemCount() {
-  const errors = useEditor((s) => problemsOf(draftOf(s)).filter((finding) => finding.severity === 'error').length)
+  const errors = useEditor((s) => problemsOf(draftOf(s)).filter(isError).length)
+  const isUnfinished = useEditor((s) => unfinishedWords(draftOf(s).root) !== '')
   const warnings = useEditor((s) => problemsOf(draftOf(s)).length) - errors
   const words =
     errors + warnings === 0
-      ? 'No problems'
+      ? isUnfinished
+        ? 'Not finished'
+        : 'No problems'
       : [errors > 0 && count(errors, 'error'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(', ')
-  const status = errors > 0 ? 'failed' : warnings > 0 ? 'warning' : 'done'
+  const status = errors > 0 ? 'failed' : warnings > 0 ? 'warning' : isUnfinished ? 'idle' : 'done'
   return (
     <Button
       size="compact-sm"
       h={30}
       fw={550}
-      variant={status === 'done' ? 'subtle' : 'default'}
+      variant={errors + warnings === 0 ? 'subtle' : 'default'}
       c={LOOKS[status]}
       {...(status === 'failed' ? { bd: '1px solid var(--failed)' } : {})}
       leftSection={<StatusIcon status={status} size={15} />}

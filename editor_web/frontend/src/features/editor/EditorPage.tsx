@@ -1,5 +1,6 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
 import { lookup } from '../../document/dict'
+import { isError, problemsOf, unfinishedWords } from '../../document/editing/findings'
 import { isGone } from '../../document/live'
 import { Flex, Loader, Stack, Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
@@ -124,10 +125,12 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   async function run(here?: Pick<StartHere, 'path' | 'kind'>): Promise<void> {
     ;(document.activeElement as HTMLElement | null)?.blur()
     await lookForFindings()
-    const errors = draftOf(editor()).findings.filter((finding) => finding.severity === 'error').length
-    if (errors > 0) {
+    const draft = draftOf(editor())
+    if (draft.findings.some(isError)) {
+      const errors = problemsOf(draft).filter(isError).length
       setEditor({ tab: 'problems' })
-      showEditorRefusal('Run', errors === 1 ? 'there is an error' : `there are ${errors} errors`, 'See the problems.')
+      if (errors === 0) showEditorRefusal('Run', 'the behavior is not finished.', unfinishedWords(draft.root))
+      else showEditorRefusal('Run', errors === 1 ? 'there is an error.' : `there are ${errors} errors.`, 'See the problems.')
       return
     }
     if (!(await save())) return

@@ -4,7 +4,7 @@ import { IconCircleCheck, IconCircleDashed } from '@tabler/icons-react'
 import type { FindingView, Fix } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
-import { emptyContainers, problemsOf } from '../../document/editing/findings'
+import { unfinishedWords, problemsOf } from '../../document/editing/findings'
 import { statusOf } from '../../document/runState'
 import { Words } from '../../components/Words'
 import { FixButtons } from './FixButtons'
@@ -48,12 +48,12 @@ function TargetChoice() {
 
 function Problems() {
   const findings = useEditor((s) => problemsOf(draftOf(s)))
-  const empty = useEditor((s) => emptyContainers(draftOf(s).root).size)
+  const unfinished = useEditor((s) => unfinishedWords(draftOf(s).root))
   const fixes = useFreshFixes()
   if (findings.length === 0) {
-    return empty > 0 ? (
+    return unfinished ? (
       <Empty icon={<IconCircleDashed size={26} stroke={1.4} aria-hidden />} title="Not finished">
-        {empty === 1 ? 'A container is empty: add a node to it.' : `${empty} containers are empty: add a node to each.`}
+        {unfinished}
       </Empty>
     ) : (
       <Empty icon={<IconCircleCheck size={26} stroke={1.4} aria-hidden />} title="No problems">

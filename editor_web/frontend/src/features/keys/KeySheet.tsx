@@ -19,7 +19,7 @@ export function KeySheet() {
   const shown = found(rows, text, (row) => [row.words, row.part, ...chordsOf(row.id, own).map(chordText)])
   const parts = [...new Set(COMMAND_TABLE.map((row) => row.part))].filter((part) => shown.some((row) => row.part === part))
   return (
-    <Dialog isOpen={isShown} onClose={close} title="Keyboard">
+    <Dialog isWide isOpen={isShown} onClose={close} title="Keyboard">
       <Group gap="sm" mb="xs">
         <TextInput
           size="xs"
@@ -40,15 +40,7 @@ export function KeySheet() {
           Reset all
         </Button>
       </Group>
-      <SimpleGrid
-        minColWidth="21rem"
-        spacing="lg"
-        verticalSpacing="xs"
-        w="min(56rem, 86vw)"
-        fz="sm"
-        mah="58vh"
-        style={{ overflowY: 'auto' }}
-      >
+      <SimpleGrid minColWidth="21rem" spacing="lg" verticalSpacing="xs" fz="sm" mah="58vh" style={{ overflowY: 'auto' }}>
         {parts.map((part) => (
           <section key={part} aria-label={part}>
             <Title order={3} fz="sm" my={6}>
