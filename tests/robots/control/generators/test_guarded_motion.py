@@ -130,3 +130,15 @@ def test_the_greatest_force_beyond_the_tare_is_recorded_also_while_it_stops_and_
     pushed(guarded, (0.0, -30.0, 0.0), 300, pace=0.0)
     pushed(guarded, (0.0, 40.0, 0.0), 5)
     assert decode_peak_n(guarded.data()) == pytest.approx(27.0)
+
+
+def test_the_tare_is_the_mean_of_a_force_that_changes() -> None:
+    """Between 10 N and 30 N, so 20 N."""
+    guarded = new_guarded(ContactCondition(force_n=10.0, direction=(0.0, -1.0, 0.0)))
+    for step in range(10):
+        pushed(guarded, (0.0, -10.0 if step % 2 else -30.0, 0.0), 1)
+    pushed(guarded, (0.0, -29.0, 0.0), 50)
+    assert not guarded.contact
+    assert decode_peak_n(guarded.data()) == pytest.approx(9.0, abs=0.5)
+    pushed(guarded, (0.0, -31.0, 0.0), 5)
+    assert guarded.contact
