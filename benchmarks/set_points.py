@@ -1,9 +1,11 @@
-"""Which set points jump: `python -P -m benchmarks.set_points [--orders N] [--seed N]`; exit code 1 where one does.
+"""Which set points jump: `python -P -m benchmarks.set_points [--orders N] [--seed N] [--results FILE]`; exit code 1
+where one does.
 
 Random orders to the left arm of the demo cell, in virtual time: motions of every kind, each cancelled, held and
 resumed, replaced by the next one, stopped, slowed down, pushed at, or given another load or tool at a random time. The
 watch of the control loop compares every set point with the limits of the arm. The table counts its reports by the
-generators before and after, with the largest share of the limit of each quantity.
+generators before and after, with the largest share of the limit of each quantity. Each cell of 50 orders is one line of
+the results file; lines of the same seed that are there already are not executed again.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from engine.bus import GoalHandle, SkillBus
@@ -53,7 +56,18 @@ ARM = "left"
 ROOT = Path(__file__).parents[1]
 CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
 # The parts of a cell are pushed about: so many orders later it is a new one.
-_ORDERS_OF_A_CELL = 200
+_ORDERS_OF_A_CELL = 50
+
+
+class CellOrders(msgspec.Struct, frozen=True, kw_only=True):
+    """The orders to one cell, and what jumped."""
+
+    seed: int
+    first: int
+    orders: int
+    goals: dict[str, int]
+    jumps: list[SetPointJumped]
+    duration_s: float
 
 
 class JumpCollector(logging.Handler):
@@ -205,24 +219,74 @@ async def _orders(count: int, chance: random.Random, folder: Path, goals: Counte
         goals.update(orders.goals)
 
 
+def order_cell(seed: int, first: int, count: int) -> CellOrders:
+    """Give orders to a new cell."""
+    collector, goals = JumpCollector(), Counter[str]()
+    log = logging.getLogger("flexcell.set_points")
+    log.addHandler(collector)
+    started_s = time.monotonic()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            run_virtual(_orders(count, random.Random(f"{seed} {first}"), Path(folder), goals))
+    finally:
+        log.removeHandler(collector)
+    duration_s = time.monotonic() - started_s
+    return CellOrders(
+        seed=seed, first=first, orders=count, goals=dict(goals), jumps=collector.jumps, duration_s=duration_s
+    )
+
+
+def saved_cells(results: Path) -> dict[tuple[int, int, int], CellOrders]:
+    """Return the lines of a results file; a last line that was cut off is left out."""
+    if not results.exists():
+        return {}
+    lines = [line for line in results.read_bytes().splitlines(keepends=True) if line.endswith(b"\n")]
+    cells = [msgspec.json.decode(line, type=CellOrders) for line in lines]
+    return {(cell.seed, cell.first, cell.orders): cell for cell in cells}
+
+
+def order_cells(orders: int, seed: int, results: Path | None) -> list[CellOrders]:
+    """Give the orders that are not saved yet, and return all."""
+    saved = saved_cells(results) if results is not None else {}
+    cells: list[CellOrders] = []
+    for first in range(0, orders, _ORDERS_OF_A_CELL):
+        count = min(_ORDERS_OF_A_CELL, orders - first)
+        cell = saved.get((seed, first, count))
+        if cell is None:
+            cell = order_cell(seed, first, count)
+            if results is not None:
+                _append(results, cell)
+        cells.append(cell)
+        jumps = sum(len(one.jumps) for one in cells)
+        print(f"{first + count} orders, {jumps} jumps", file=sys.stderr, flush=True)
+    return cells
+
+
+def _append(results: Path, cell: CellOrders) -> None:
+    with results.open("ab+") as file:
+        file.seek(0)
+        content = file.read()
+        # A line that was cut off must not swallow the next one.
+        file.truncate(content.rfind(b"\n") + 1)
+        file.write(msgspec.json.encode(cell) + b"\n")
+
+
 def main() -> int:
     """Give the orders and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--orders", type=int, default=200, help="number of orders (default 200)")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--results", type=Path, help="file of JSON lines in which results are kept and looked up")
     options = parser.parse_args()
-    collector, goals = JumpCollector(), Counter[str]()
-    logging.getLogger("flexcell.set_points").addHandler(collector)
-    started_s = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        for first in range(0, options.orders, _ORDERS_OF_A_CELL):
-            count = min(_ORDERS_OF_A_CELL, options.orders - first)
-            run_virtual(_orders(count, random.Random(f"{options.seed} {first}"), Path(folder), goals))
-            print(f"{first + count} orders, {len(collector.jumps)} jumps", file=sys.stderr, flush=True)
+    cells = order_cells(options.orders, options.seed, options.results)
+    goals: Counter[str] = Counter()
+    for cell in cells:
+        goals.update(cell.goals)
+    jumps = [jump for cell in cells for jump in cell.jumps]
     print(", ".join(f"{name} {count}" for name, count in sorted(goals.items())))
-    _print_table(collector.jumps)
-    print(f"{len(collector.jumps)} jumps in {options.orders} orders, {time.monotonic() - started_s:.0f} s")
-    return 1 if collector.jumps else 0
+    _print_table(jumps)
+    print(f"{len(jumps)} jumps in {options.orders} orders, {sum(cell.duration_s for cell in cells):.0f} s")
+    return 1 if jumps else 0
 
 
 def _print_table(jumps: list[SetPointJumped]) -> None:

@@ -23,13 +23,39 @@ ContactForce = Annotated[
         extra_json_schema={"unit": "N", "measured_on": "wrench"},
     ),
 ]
+PeakForce = Annotated[
+    float,
+    msgspec.Meta(
+        gt=0.0,
+        description="Maximum force at the first touch; it lowers the speed after `clear_m`",
+        extra_json_schema={"unit": "N"},
+    ),
+]
+ClearDistance = Annotated[
+    float,
+    msgspec.Meta(
+        ge=0.0,
+        description="With `peak_n`: distance without anything to touch, at `speed_m_s`",
+        extra_json_schema={"unit": "m"},
+    ),
+]
+SurfaceStiffness = Annotated[
+    float,
+    msgspec.Meta(
+        gt=0.0,
+        description="With `peak_n`: stiffness of surface and tool together, by default of rubber pads on metal",
+        extra_json_schema={"unit": "N/m"},
+    ),
+]
+RIGID_N_M = 1.3e6
+"""Stiffness of rubber pads flat on something rigid, from peaks of simulated arms; on an edge it is a third of it."""
 
 
 class ContactResult(Message, frozen=True, kw_only=True):
     """Whether a contact occurred, and the pose of the tool at rest.
 
     `wrench` is the external wrench on the tool there, `force_n` its force component against the direction;
-    `travelled_m` is the distance travelled along the direction.
+    `peak_n` is the greatest that was measured on the path, and `travelled_m` the distance along the direction.
     """
 
     contact: bool
@@ -38,6 +64,7 @@ class ContactResult(Message, frozen=True, kw_only=True):
     force_n: float
     wrench: Wrench
     duration_s: float
+    peak_n: float = 0.0
 
 
 class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -45,7 +72,8 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
 
     The arm then decelerates at its limits to rest; the full distance without a contact is a success
     too, with `contact` false. `direction` need not have length 1; it is along the axes of `frame`.
-    Rejected before the motion as in CartLinTask.
+    With `peak_n` the tool travels the first `clear_m` at `speed_m_s` and the rest as slowly as this peak requires of
+    the mass of arm and load on a contact of `surface_n_m`. Rejected before the motion as in CartLinTask.
     """
 
     direction: Vector3
@@ -53,3 +81,6 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
     frame: Axes = "world"
     speed_m_s: ApproachSpeed = 0.02
     force_n: ContactForce = 10.0
+    peak_n: PeakForce | None = None
+    clear_m: ClearDistance = 0.0
+    surface_n_m: SurfaceStiffness = RIGID_N_M

@@ -55,7 +55,8 @@ class Compliance(Message, frozen=True, kw_only=True):
     damping N s/m and N m s/rad, stiffness N/m and N m/rad (0: pure force control). `frame` selects the
     axes of the task frame: those of the world, of the arm's base, or of the tool at the start of
     the motion. The offset stays within `reach_m` and `turn_rad`, its speed within `speed_m_s`
-    and `turn_rad_s`.
+    and `turn_rad_s`. As long as no force is felt along an axis on which one is wanted, the force moves the tool no
+    faster than `touch_m_s`, which limits the peak of the first touch.
     """
 
     active: Vector6 = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
@@ -66,6 +67,7 @@ class Compliance(Message, frozen=True, kw_only=True):
     reach_m: Annotated[float, msgspec.Meta(gt=0.0)] = 0.05
     turn_rad: Annotated[float, msgspec.Meta(gt=0.0)] = 0.3
     speed_m_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.1
+    touch_m_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.01
     turn_rad_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.5
 
     def __post_init__(self) -> None:

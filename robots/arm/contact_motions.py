@@ -13,8 +13,13 @@ from engine.skills.motion import CartMotionFeedback
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.trajectory_goal import publish_pose_feedback
+from robots.control.generators.guarded_motion import decode_peak_n
+from robots.model.mechanics.dynamics import ArmDynamics, Payload
 from robots.model.transform import RigidTransform
+from robots.motion import plan_line
 from robots.motion.min_jerk import PEAK_SPEED
+from robots.motion.speed_profile import MIN_JERK, SpeedProfile, plan_approach
+from robots.motion.touch_speed import effective_mass_kg, touch_speed_m_s
 from robots.port import Array, ContactCondition, JointTrajectory, Motion
 from robots.port.wrench import to_wrench
 
@@ -40,9 +45,12 @@ class ContactMotions:
         if not math.isfinite(goal.distance_m):
             raise GoalRejected(f"{goal.distance_m} m is not a distance", where=handle.address, hint="`distance_m: 0.1`")
         end = RigidTransform(xyz=start.xyz + goal.distance_m * direction, xyzw=start.xyzw)
-        duration_s = PEAK_SPEED * goal.distance_m / goal.speed_m_s
+        profile, duration_s = self._profile(goal, direction, handle)
         trajectory = await runner.planned(
-            handle, lambda joints: runner.planner.along_line(joints, end, duration_s=duration_s)
+            handle,
+            lambda joints: runner.planner.make(
+                lambda kinematics: plan_line(kinematics, joints, end, duration_s=duration_s, profile=profile)
+            ),
         )
         before = runner.measured_tool()
         ended = await runner.carry_out(
@@ -58,7 +66,35 @@ class ContactMotions:
             force_n=float(-wrench[:3] @ direction),
             wrench=to_wrench(wrench),
             duration_s=ended.duration_s,
+            peak_n=decode_peak_n(ended.report.data) if ended.report.data else 0.0,
         )
+
+    def _profile(
+        self, goal: MoveUntilContact, direction: Array, handle: ActiveGoal[CartMotionFeedback]
+    ) -> tuple[SpeedProfile, float]:
+        """Return the speed along the line and its time, s."""
+        if goal.peak_n is None:
+            return MIN_JERK, PEAK_SPEED * goal.distance_m / goal.speed_m_s
+        if goal.peak_n < goal.force_n:
+            raise GoalRejected(
+                f"a peak of {goal.peak_n:g} N is less than the contact force of {goal.force_n:g} N",
+                where=handle.address,
+                hint="lower `force_n` or raise `peak_n`",
+            )
+        touch_m_s = touch_speed_m_s(self._mass_kg(direction), peak_n=goal.peak_n, surface_n_m=goal.surface_n_m)
+        return plan_approach(
+            goal.distance_m,
+            clear_m=min(goal.clear_m, goal.distance_m),
+            speed_m_s=goal.speed_m_s,
+            touch_m_s=min(goal.speed_m_s, touch_m_s),
+        )
+
+    def _mass_kg(self, direction: Array) -> float:
+        """Return the effective mass of arm, tool and load along `direction`."""
+        runner, settings = self._runner, self._runner.port.settings
+        load = Payload(mass_kg=settings.load_kg, com_m=settings.load_com_m) if settings.load_kg > 0.0 else None
+        dynamics = ArmDynamics(runner.model, load=load)
+        return effective_mass_kg(dynamics, runner.kinematics, runner.port.sample().desired_rad, direction)
 
     def _direction(self, goal: MoveUntilContact, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]) -> Array:
         """Return the unit vector of the motion in the world, (3,)."""

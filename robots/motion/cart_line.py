@@ -11,8 +11,8 @@ from engine.errors import RobotError
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, conjugate, product, rotation_vector
 from robots.motion.joint_checks import check_duration, check_speed
-from robots.motion.min_jerk import PEAK_SPEED, min_jerk
 from robots.motion.slerp import slerp
+from robots.motion.speed_profile import MIN_JERK, SpeedProfile
 from robots.motion.tool_path import (
     FEWEST_KNOTS,
     KNOT_M,
@@ -56,7 +56,9 @@ class _Line:
         return np.concatenate((self.end.xyz - self.start.xyz, self.start.rotation @ turn_here))
 
 
-def plan_line(kinematics: ArmKinematics, start: Array, end: RigidTransform, *, duration_s: float) -> JointTrajectory:
+def plan_line(
+    kinematics: ArmKinematics, start: Array, end: RigidTransform, *, duration_s: float, profile: SpeedProfile = MIN_JERK
+) -> JointTrajectory:
     """Return the joint trajectory that moves the tool straight from `start` (radians, (n,)) to `end` (world).
 
     Raises:
@@ -68,7 +70,7 @@ def plan_line(kinematics: ArmKinematics, start: Array, end: RigidTransform, *, d
     line = _Line(start=kinematics.tool_pose(start), end=end)
     if not line.distance_m <= _FARTHEST_M:
         raise RobotError(f"the line would be {line.distance_m:.3g} m long", hint="no arm reaches that far")
-    shares = min_jerk(np.linspace(0.0, 1.0, _intervals(line, duration_s) + 1))
+    shares = profile.shares(np.linspace(0.0, 1.0, _intervals(line, duration_s, profile.peak) + 1))
     poses = [line.at(float(share)) for share in shares]
     strides = np.diff(shares)
     path = ToolPath(
@@ -107,11 +109,11 @@ def _clamped_slopes(knots: Array, dt_s: float) -> Array:
     return slopes
 
 
-def _intervals(line: _Line, duration_s: float) -> int:
+def _intervals(line: _Line, duration_s: float, peak_speed: float) -> int:
     knots = max(
         duration_s / KNOT_S,
-        PEAK_SPEED * line.distance_m / KNOT_M,
-        PEAK_SPEED * line.angle_rad / KNOT_RAD,
+        peak_speed * line.distance_m / KNOT_M,
+        peak_speed * line.angle_rad / KNOT_RAD,
         FEWEST_KNOTS,
     )
     return min(MOST_KNOTS, math.ceil(knots))

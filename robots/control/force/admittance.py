@@ -1,6 +1,13 @@
-"""Admittance: force errors deviate the tool, M ẍ + D ẋ + K x = F − F_wanted (RCL 4.3.7)."""
+"""Admittance: force errors deviate the tool, M ẍ + D ẋ + K x = F − F_wanted (RCL 4.3.7).
+
+Towards a surface that is not felt, the damping is that with which the wanted force moves the tool at `touch_m_s`; from
+half of the wanted force on it is D. Variable damping is that of Ikeura and Inooka (ICRA 1995) and of Duchaine and
+Gosselin (World Haptics 2007); the peak of an impact grows with the speed alone (see `robots/motion/touch_speed.py`).
+"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -10,6 +17,8 @@ from robots.port import Array
 # While the loop only yields, forces up to this much above the target ones are tolerated.
 _BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
 _AXES = 6
+# From this share of the wanted force on, the tool presses on something.
+_PRESSING_SHARE = 0.5
 # The offset approaches its reach with this time constant, so that the tool stops there without passing it.
 _APPROACH_S = 0.02
 
@@ -26,6 +35,7 @@ class AdmittanceLoop:
         self._axes = tuple(axis for axis in range(_AXES) if admittance.active[axis] > 0.0)
         self._reach = (admittance.reach_m,) * 3 + (admittance.turn_rad,) * 3
         self._speed = (admittance.speed_m_s,) * 3 + (admittance.turn_rad_s,) * 3
+        self._touch = (admittance.touch_m_s,) * 3 + (math.inf,) * 3
         self._offset = [0.0] * _AXES
         self._rate = [0.0] * _AXES
         self.total = np.zeros(_AXES)
@@ -38,7 +48,9 @@ class AdmittanceLoop:
     def press(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
         """Advance so that the measured wrench converges to the target one, (6,); `total` is the whole offset."""
         for axis in self._axes:
-            self._move(axis, step_s, float(measured[axis] - target[axis]), float(feed_forward[axis]))
+            felt, wanted = float(measured[axis]), float(target[axis])
+            damping = self._damping(axis, felt, wanted)
+            self._move(axis, step_s, felt - wanted, damping, float(feed_forward[axis]))
         self._add_up(feed_forward)
 
     def relieve(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
@@ -47,12 +59,21 @@ class AdmittanceLoop:
             excess = float(measured[axis] - target[axis])
             towards = excess * float(target[axis]) < 0.0
             excess = 0.0 if towards else np.copysign(max(0.0, abs(excess) - _BORNE[axis]), excess)
-            self._move(axis, step_s, float(excess), float(feed_forward[axis]))
+            self._move(axis, step_s, float(excess), self._law.damping[axis], float(feed_forward[axis]))
         self._add_up(feed_forward)
 
-    def _move(self, axis: int, step_s: float, error: float, feed_forward: float) -> None:
+    def _damping(self, axis: int, felt: float, wanted: float) -> float:
+        """Return the damping: that of the law where the tool presses, more where it does not touch yet."""
+        damping = self._law.damping[axis]
+        if wanted == 0.0:
+            return damping
+        free = max(damping, self._law.active[axis] * abs(wanted) / self._touch[axis])
+        share = min(1.0, max(0.0, felt / (_PRESSING_SHARE * wanted)))
+        return free + share * (damping - free)
+
+    def _move(self, axis: int, step_s: float, error: float, damping: float, feed_forward: float) -> None:
         law, offset = self._law, self._offset[axis]
-        mass, damping, stiffness = law.mass[axis], law.damping[axis], law.stiffness[axis]
+        mass, stiffness = law.mass[axis], law.stiffness[axis]
         push = step_s * (law.active[axis] * error - stiffness * offset)
         rate = (mass * self._rate[axis] + push) / (mass + step_s * (damping + step_s * stiffness))
         whole = self.total[axis]

@@ -55,5 +55,5 @@ def _check_law(law: Compliance) -> None:
                 f"mass {mass}, damping {damping}, stiffness {stiffness} are not finite on axis {axis}",
                 hint="give finite numbers",
             )
-    if not all(value > 0.0 for value in (law.reach_m, law.turn_rad, law.speed_m_s, law.turn_rad_s)):
-        raise RobotError("reach_m, turn_rad, speed_m_s and turn_rad_s must be positive")
+    if not all(value > 0.0 for value in (law.reach_m, law.turn_rad, law.speed_m_s, law.touch_m_s, law.turn_rad_s)):
+        raise RobotError("reach_m, turn_rad, speed_m_s, touch_m_s and turn_rad_s must be positive")

@@ -10,7 +10,7 @@ from robots.control.arm_state import ArmState
 from robots.control.generators.motion_generator import MotionGenerator
 from robots.port import Array, ContactCondition
 
-GUARDED_STOP_S = 0.02
+GUARDED_STOP_S = 0.005
 """Minimum stop time of a guarded motion, for `TrajectoryPlayback(shortest_stop_s=…)`."""
 
 _TARE_S = 0.01
@@ -42,6 +42,7 @@ class GuardedMotion:
         self._tare_s = 0.0
         self._pushed_s = 0.0
         self._touched = False
+        self._peak_n = 0.0
         self.position = inner.position
         self.velocity = inner.velocity
         self.acceleration = inner.acceleration
@@ -87,21 +88,28 @@ class GuardedMotion:
         return self._inner.failure
 
     def data(self) -> bytes:
-        """As the inner motion."""
-        return self._inner.data()
+        """Return the greatest contact force from the start on, N, encoded; see `decode_peak_n`."""
+        return np.float64(self._peak_n).tobytes()
 
     def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
         """Advance by `step_s`, or brake after a contact."""
+        pushed = self._push_n(step_s, state.wrench[:3])
+        self._peak_n = max(self._peak_n, pushed)
         if not self._touched and target_pace > 0.0:
-            self._touched = self._feel(step_s, state.wrench[:3])
+            self._pushed_s = self._pushed_s + step_s if pushed >= self._force_n else 0.0
+            self._touched = self._pushed_s >= _DEBOUNCE_S
         self._inner.step(step_s, target_pace=0.0 if self._touched else target_pace, state=state)
 
-    def _feel(self, step_s: float, force: Array) -> bool:
+    def _push_n(self, step_s: float, force: Array) -> float:
+        """Return the contact force of this period, 0 while the tare is measured."""
         if self._tare_s < _TARE_S:
             self._tare_s += step_s
             self._tare += (force - self._tare) * min(1.0, step_s / self._tare_s)
-            return False
+            return 0.0
         added = force - self._tare
-        pushed = math.sqrt(float(added @ added)) if self._any_direction else float(added @ self._direction)
-        self._pushed_s = self._pushed_s + step_s if pushed >= self._force_n else 0.0
-        return self._pushed_s >= _DEBOUNCE_S
+        return math.sqrt(float(added @ added)) if self._any_direction else float(added @ self._direction)
+
+
+def decode_peak_n(data: bytes) -> float:
+    """Return the greatest contact force of a guarded motion from its recorded data."""
+    return float(np.frombuffer(data)[0])

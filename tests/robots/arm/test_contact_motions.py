@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -86,3 +87,41 @@ async def test_a_preempted_guarded_move_is_canceled_at_rest_and_the_next_goal_is
         assert end.result is not None
         assert (end.status, end.result.contact) == (GoalStatus.CANCELED, False)
         assert await cell.status_of_next() is GoalStatus.SUCCEEDED
+
+
+@pytest.mark.virtual
+async def test_with_a_peak_only_the_clear_distance_is_passed_fast() -> None:
+    """The rest is as slow as the peak requires of the arm's mass."""
+    async with served() as cell:
+        slow = MoveUntilContact(direction=(0.0, 0.0, -1.0), distance_m=0.1, speed_m_s=0.05, force_n=8.0, peak_n=10.0)
+        whole = await cell.bus.send_goal(slow, to="left").result()
+        clear = await cell.bus.send_goal(msgspec.structs.replace(slow, clear_m=0.09), to="left").result()
+    assert whole.result is not None
+    assert clear.result is not None
+    assert clear.result.travelled_m == pytest.approx(0.1, abs=1e-3)
+    assert 10.0 < whole.result.duration_s < 30.0
+    assert 2.5 < clear.result.duration_s < 0.4 * whole.result.duration_s
+
+
+@pytest.mark.virtual
+async def test_a_soft_surface_may_be_met_faster_with_the_same_peak() -> None:
+    """A hundredth of the stiffness, ten times the speed."""
+    async with served() as cell:
+        hard = MoveUntilContact(direction=(0.0, 0.0, -1.0), distance_m=0.05, speed_m_s=0.2, force_n=8.0, peak_n=10.0)
+        first = await cell.bus.send_goal(hard, to="left").result()
+        soft = msgspec.structs.replace(hard, direction=(0.0, 0.0, 1.0), surface_n_m=hard.surface_n_m / 100.0)
+        second = await cell.bus.send_goal(soft, to="left").result()
+    assert first.result is not None
+    assert second.result is not None
+    assert 5.0 < first.result.duration_s / second.result.duration_s < 11.0
+
+
+@pytest.mark.virtual
+async def test_a_peak_below_the_contact_force_is_rejected() -> None:
+    """It could never be felt."""
+    async with served() as cell:
+        goal = MoveUntilContact(direction=(0.0, 0.0, -1.0), distance_m=0.05, force_n=8.0, peak_n=5.0)
+        end = await cell.bus.send_goal(goal, to="left").result()
+    assert (end.status, cell.port.followed) == (GoalStatus.REJECTED, [])
+    assert end.cause is not None
+    assert "a peak of 5 N is less than the contact force of 8 N" in end.cause.message

@@ -46,6 +46,27 @@ async def test_the_table_is_found_within_two_millimetres_and_the_arm_rests_press
 
 
 @pytest.mark.virtual
+async def test_with_a_peak_the_table_is_touched_no_harder_and_the_result_says_how_hard() -> None:
+    """The first five millimetres are clear."""
+    async with simulated() as cell:
+        await cell.perform(ABOVE)
+        search = MoveUntilContact(
+            direction=(0.0, 0.0, -1.0), distance_m=0.02, speed_m_s=0.05, force_n=5.0, peak_n=10.0, clear_m=0.005
+        )
+        handle = cell.bus.send_goal(search, to="left")
+        felt: list[float] = []
+        while not handle.finished:
+            felt.append(float(cell.port.sample().wrench[2]))
+            await cell.bus.clock.sleep(0.002)
+        end = await handle.result()
+    assert end.result is not None
+    assert end.result.contact
+    assert end.result.pose.xyz[2] == pytest.approx(TIP_M, abs=0.002)
+    assert 5.0 < end.result.peak_n <= 10.0
+    assert max(felt) <= end.result.peak_n + 1e-6
+
+
+@pytest.mark.virtual
 async def test_nothing_in_the_way_is_no_contact_however_fast_the_arm_starts_and_stops() -> None:
     """What its own motion needs is no force of the surroundings."""
     async with simulated() as cell:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import pytest
 
 from engine.errors import Cause
@@ -23,22 +24,35 @@ SEARCH = MoveUntilContact(robot="left", direction=(0.0, 0.0, -1.0), distance_m=0
 def ended(*, met: bool, force_n: float) -> GoalEnd[ContactResult]:
     """The end of a guarded move after 3 cm."""
     wrench = Wrench(force_n=(0.0, 0.0, force_n), torque_nm=(0.0, 0.0, 0.0), frame="world")
-    result = ContactResult(contact=met, pose=HERE, travelled_m=0.03, force_n=force_n, wrench=wrench, duration_s=1.0)
+    result = ContactResult(
+        contact=met, pose=HERE, travelled_m=0.03, force_n=force_n, wrench=wrench, duration_s=1.0, peak_n=9.1
+    )
     return GoalEnd(GoalStatus.SUCCEEDED, result, None)
 
 
 async def test_a_contact_is_an_outcome_with_the_way_and_the_force() -> None:
     """The goal is what the state says."""
     ctx = FakeContext({"left/move_until_contact": ended(met=True, force_n=8.4)})
-    assert await SEARCH.run(ctx) == Outcome("contact", {"travelled_m": 0.03, "force_n": 8.4})
+    assert await SEARCH.run(ctx) == Outcome("contact", {"travelled_m": 0.03, "force_n": 8.4, "peak_n": 9.1})
     goal = contact.MoveUntilContact(direction=(0.0, 0.0, -1.0), distance_m=0.05, force_n=8.0)
+    assert ctx.sent == [("left/move_until_contact", goal)]
+
+
+async def test_a_peak_is_passed_on_with_the_distance_that_is_clear() -> None:
+    """And the stiffness of what is touched."""
+    ctx = FakeContext({"left/move_until_contact": ended(met=True, force_n=8.4)})
+    state = msgspec.structs.replace(SEARCH, peak_n=20.0, clear_m=0.04, surface_n_m=5000.0)
+    await state.run(ctx)
+    goal = contact.MoveUntilContact(
+        direction=(0.0, 0.0, -1.0), distance_m=0.05, force_n=8.0, peak_n=20.0, clear_m=0.04, surface_n_m=5000.0
+    )
     assert ctx.sent == [("left/move_until_contact", goal)]
 
 
 async def test_no_contact_is_another_and_says_how_little_was_felt() -> None:
     """A behavior may search elsewhere."""
     outcome = await SEARCH.run(FakeContext({"left/move_until_contact": ended(met=False, force_n=0.2)}))
-    assert (outcome.name, outcome.outputs) == ("no_contact", {"travelled_m": 0.03, "force_n": 0.2})
+    assert (outcome.name, outcome.outputs) == ("no_contact", {"travelled_m": 0.03, "force_n": 0.2, "peak_n": 9.1})
     assert outcome.cause is not None
     assert outcome.cause.message == "left detected no contact within 0.050 m"
     assert outcome.cause.chain()[-1].message == "the contact force at the end was 0.2 N, threshold 8.0 N"

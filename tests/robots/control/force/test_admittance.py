@@ -69,3 +69,37 @@ def test_giving_way_does_not_press_on_but_yields_to_more_than_is_wanted() -> Non
     for _ in range(300):
         loop.relieve(STEP_S, measured=along_y(-30.0), target=along_y(-10.0), feed_forward=NONE)
     assert loop.total[1] < -0.01
+
+
+def settled_m_s(law: Compliance, felt_n: float, wanted_n: float) -> float:
+    """Return the speed along y after the time of the mass, under a constant force."""
+    loop = AdmittanceLoop(law)
+    before = 0.0
+    for _ in range(400):
+        before = float(loop.total[1])
+        loop.press(STEP_S, measured=along_y(felt_n), target=along_y(wanted_n), feed_forward=NONE)
+    return (float(loop.total[1]) - before) / STEP_S
+
+
+@pytest.mark.parametrize(
+    ("felt_n", "speed_m_s"), [(0.0, -0.01), (-0.2, -0.01013), (7.5, -0.025), (12.0, -0.01), (30.0, 0.05)]
+)
+def test_without_contact_the_tool_approaches_at_the_touch_speed_and_from_half_of_the_force_on_by_its_damping(
+    felt_n: float, speed_m_s: float
+) -> None:
+    """15 N against 300 N s/m would be 50 mm/s."""
+    assert settled_m_s(Compliance(active=ONLY_Y), felt_n, 15.0) == pytest.approx(speed_m_s, rel=1e-2)
+    assert settled_m_s(Compliance(active=ONLY_Y), -felt_n, -15.0) == pytest.approx(-speed_m_s, rel=1e-2)
+
+
+def test_a_touch_speed_beyond_that_of_the_damping_changes_nothing() -> None:
+    assert settled_m_s(Compliance(active=ONLY_Y, touch_m_s=0.1), 0.0, 15.0) == pytest.approx(-0.05, rel=1e-3)
+
+
+def test_where_no_force_is_wanted_the_touch_speed_does_not_matter() -> None:
+    assert settled_m_s(Compliance(active=ONLY_Y, touch_m_s=0.001), 6.0, 0.0) == pytest.approx(0.02, rel=1e-3)
+
+
+def test_a_share_of_the_axis_does_not_change_the_touch_speed() -> None:
+    half = Compliance(active=(0.0, 0.5, 0.0, 0.0, 0.0, 0.0), touch_m_s=0.004)
+    assert settled_m_s(half, 0.0, 15.0) == pytest.approx(-0.004, rel=1e-3)

@@ -251,7 +251,7 @@ def test_a_speed_override_slows_the_path_and_not_the_force() -> None:
 
 def pulled() -> ForceTracking:
     """Return a task that nothing pushes back at along x: the offset pulls the tool to the shoulder's limit."""
-    away = Compliance(active=(1.0, 1.0, 0.0, 0.0, 0.0, 0.0), reach_m=0.3)
+    away = Compliance(active=(1.0, 1.0, 0.0, 0.0, 0.0, 0.0), reach_m=0.3, touch_m_s=0.1)
     plain = task(admittance=away)
     wrench = np.zeros_like(plain.wrench)
     wrench[:, 0] = 30.0

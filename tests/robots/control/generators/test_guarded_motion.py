@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robots.control.generators.guarded_motion import GUARDED_STOP_S, GuardedMotion
+from robots.control.generators.guarded_motion import GUARDED_STOP_S, GuardedMotion, decode_peak_n
 from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.port import Array, ContactCondition, JointTrajectory
 from tests.robots.control.limit_watch import STEP_S
@@ -119,3 +119,26 @@ def test_it_stops_on_its_path_within_the_acceleration() -> None:
         assert abs(along[0] - along[1]) < 1e-12
     assert guarded.complete
     assert np.abs(np.diff(np.array(velocities), axis=0)).max() / STEP_S < 15.0
+
+
+def test_the_greatest_force_beyond_the_tare_is_recorded_also_while_it_stops_and_is_held() -> None:
+    guarded = new_guarded(ContactCondition(force_n=10.0, direction=(0.0, -1.0, 0.0)))
+    pushed(guarded, (0.0, -3.0, 0.0), 300)
+    assert decode_peak_n(guarded.data()) == pytest.approx(0.0, abs=1e-12)
+    pushed(guarded, (0.0, -11.0, 0.0), 2)
+    assert decode_peak_n(guarded.data()) == pytest.approx(8.0)
+    pushed(guarded, (0.0, -30.0, 0.0), 300, pace=0.0)
+    pushed(guarded, (0.0, 40.0, 0.0), 5)
+    assert decode_peak_n(guarded.data()) == pytest.approx(27.0)
+
+
+def test_the_tare_is_the_mean_of_a_force_that_changes() -> None:
+    """Between 10 N and 30 N, so 20 N."""
+    guarded = new_guarded(ContactCondition(force_n=10.0, direction=(0.0, -1.0, 0.0)))
+    for step in range(10):
+        pushed(guarded, (0.0, -10.0 if step % 2 else -30.0, 0.0), 1)
+    pushed(guarded, (0.0, -29.0, 0.0), 50)
+    assert not guarded.contact
+    assert decode_peak_n(guarded.data()) == pytest.approx(9.0, abs=0.5)
+    pushed(guarded, (0.0, -31.0, 0.0), 5)
+    assert guarded.contact

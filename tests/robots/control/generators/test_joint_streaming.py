@@ -186,3 +186,14 @@ def test_seven_joints_take_less_than_a_tenth_of_a_millisecond_a_period() -> None
         seven.receive(np.full(7, float(swing(step * STEP_S)[0])))
         seven.step(STEP_S, target_pace=1.0, state=STATE)
     assert time.thread_time() - start < 0.1 * 3
+
+
+def test_a_stream_has_no_progress_until_it_has_finished() -> None:
+    streaming = new_streaming()
+    streaming.receive(swing(0.3))
+    streaming.step(STEP_S, target_pace=1.0, state=STATE)
+    before = streaming.progress
+    streaming.finish()
+    while not streaming.complete:
+        streaming.step(STEP_S, target_pace=1.0, state=STATE)
+    assert (before, streaming.progress) == (0.0, 1.0)

@@ -85,6 +85,13 @@ def test_the_tool_keeps_to_its_speed(path: tuple[Array, list[float]], speed_m_s:
     assert speeds.max() <= speed_m_s * 1.01
 
 
+def test_the_tool_is_not_slower_than_it_may_be() -> None:
+    found = timed(CORNER, [0.0, 0.01, 0.0], speed=1.0, speed_m_s=0.1)
+    points = np.array([tool(row) for row in found.trajectory.position_rad])
+    speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / found.trajectory.dt_s
+    assert speeds.max() > 0.09
+
+
 def test_the_arm_passes_a_blended_corner_and_rests_at_one_without_a_blend() -> None:
     for blend_m, is_moving in ((0.02, True), (0.0, False)):
         found = timed(CORNER, [0.0, blend_m, 0.0])
