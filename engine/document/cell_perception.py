@@ -136,8 +136,8 @@ def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[
 class Person(StrictModel, frozen=True, kw_only=True):
     """One arm of a person in a simulated cell: it reaches from `shoulder` and rests at `hand_rests`.
 
-    The arm consists of two capsules and a ball with the dimensions of an adult; it moves kinematically, without
-    contact response. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
+    The arm consists of two capsules and a ball with the dimensions of an adult; it gives way to what pushes it and
+    stops at fixtures. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
     """
 
     shoulder: PositionXyz
