@@ -5,6 +5,9 @@ near a random place of the path that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s
 time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same paths with
 the same intrusions and does not look out: it must show contacts, or the others mean nothing.
 
+With `--separation` people come from 1.3 m away, where cameras see them, and all intrusions are also carried out with
+speed and separation monitoring (`monitored`), by motions that look out and motions that do not in turns.
+
 Every drawn hand that gets into the path is executed and counted, by what could avoid a contact (`Avoidability`):
 braking, only having been slower (ISO 13855: the person comes within the minimum distance), or nothing the arm does.
 """
@@ -16,7 +19,7 @@ import asyncio
 import json
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import get_args
 
@@ -25,6 +28,11 @@ import numpy as np
 
 from benchmarks.comparison import machine
 from benchmarks.intrusion_drawing import Avoidability, Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_layout import (
+    with_people_from_afar,
+    with_people_on_both_sides,
+    with_separation_monitoring,
+)
 from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
@@ -40,6 +48,9 @@ REACTION_S = 0.25
 _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ENDS = (Pose(xyz=(1.1, -0.7, 1.0), xyzw=_DOWN), Pose(xyz=(1.1, 0.7, 1.0), xyzw=_DOWN))
 _TRIAL_S = 600.0
+
+MONITORED = "monitored"
+"""The group with speed and separation monitoring, in which MoveFree and JointTrapVel take turns."""
 
 Numbered = tuple[int, Intrusion]
 
@@ -78,7 +89,13 @@ async def _undisturbed(document: Cell, speed: float) -> UndisturbedMotions:
 
 
 async def _trials(
-    document: Cell, motions: UndisturbedMotions, intrusions: Sequence[Numbered], *, group: str, speed: float
+    document: Cell,
+    motions: UndisturbedMotions,
+    intrusions: Sequence[Numbered],
+    *,
+    group: str,
+    speed: float,
+    log: Path | None,
 ) -> list[Trial]:
     """Carry out intrusions in a cell until one ends badly."""
     done: list[Trial] = []
@@ -88,7 +105,7 @@ async def _trials(
             await cell.free(MotionTarget(joints=undisturbed.start))
             started_s = time.process_time()
             async with asyncio.timeout(_TRIAL_S):
-                ended = await cell.intruded(undisturbed, intrusion, adapts=group == "MoveFree")
+                ended = await cell.intruded(undisturbed, intrusion, adapts=_adapts(group, number))
             trial = Trial(
                 group=group,
                 number=number,
@@ -98,28 +115,43 @@ async def _trials(
             )
             done.append(trial)
             print(_line(trial), flush=True)
+            if log is not None:
+                with log.open("ab") as file:
+                    file.write(msgspec.json.encode(trial) + b"\n")
             if ended.end in ("failed", "stuck") or ended.contacts:
                 break
     return done
 
 
-def _with_people_on_both_sides(cell: Cell) -> Cell:
-    """Return the cell with each person once more, mirrored at the plane y = 0."""
-    people = dict(cell.document.people)
-    for name, person in cell.document.people.items():
-        (sx, sy, sz), (hx, hy, hz) = person.shoulder, person.hand_rests
-        people[f"{name}_across"] = msgspec.structs.replace(person, shoulder=(sx, -sy, sz), hand_rests=(hx, -hy, hz))
-    return replace(cell, document=msgspec.structs.replace(cell.document, people=people))
+def _adapts(group: str, number: int) -> bool:
+    """Return whether the motion is a MoveFree: all, none, or with separation monitoring both in turns."""
+    return number // 2 % 2 == 0 if group == MONITORED else group == "MoveFree"
 
 
 def _group(
-    document: Cell, motions: UndisturbedMotions, drawn: Sequence[Numbered], *, group: str, speed: float
+    document: Cell,
+    motions: UndisturbedMotions,
+    drawn: Sequence[Numbered],
+    *,
+    group: str,
+    speed: float,
+    log: Path | None = None,
 ) -> list[Trial]:
-    """Carry out all; after one that ended badly the next begins in a new cell."""
-    done: list[Trial] = []
-    while len(done) < len(drawn):
-        done += run_virtual(_trials(document, motions, drawn[len(done) :], group=group, speed=speed))
+    """Carry out all that the log does not have; after one that ended badly the next begins in a new cell."""
+    done = [trial for trial in _logged(log) if trial.group == group]
+    numbers = {trial.number for trial in done}
+    left = [one for one in drawn if one[0] not in numbers]
+    while left:
+        carried_out = run_virtual(_trials(document, motions, left, group=group, speed=speed, log=log))
+        left = left[len(carried_out) :]
+        done += carried_out
     return done
+
+
+def _logged(log: Path | None) -> list[Trial]:
+    if log is None or not log.exists():
+        return []
+    return [msgspec.json.decode(line, type=Trial) for line in log.read_bytes().splitlines()]
 
 
 def _line(trial: Trial) -> str:
@@ -175,9 +207,17 @@ def main() -> None:
     parser.add_argument("--avoidable-by", choices=get_args(Avoidability), help="carry out these of the drawing only")
     parser.add_argument("--speed", type=float, default=0.3, help="share of the joint speed limits (default 0.3)")
     parser.add_argument("--cell", type=Path, default=CELL, help="a cell of one arm with people on one side")
+    parser.add_argument(
+        "--separation",
+        action="store_true",
+        help="people come from afar; run the intrusions with speed and separation monitoring too",
+    )
+    parser.add_argument("--log", type=Path, help="append each trial to this file, and carry out only what it lacks")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
     options = parser.parse_args()
-    document = _with_people_on_both_sides(load_cell(options.cell))
+    document = with_people_on_both_sides(load_cell(options.cell))
+    if options.separation:
+        document = with_people_from_afar(document)
     motions = run_virtual(_undisturbed(document, options.speed))
     drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + motions.stopping_s)
     random = np.random.default_rng(options.seed)
@@ -192,11 +232,15 @@ def main() -> None:
         f"places drawn that are in reach, {drawer.beside} are beside the path. {machine()}.\n",
         flush=True,
     )
-    control = _group(document, motions, drawn[: options.control], group="JointTrapVel", speed=options.speed)
-    free = _group(document, motions, drawn, group="MoveFree", speed=options.speed)
-    print(f"\n{_table((('JointTrapVel (control)', control), ('MoveFree', free)))}")
+    speed, log = options.speed, options.log
+    groups = [("JointTrapVel", document, drawn[: options.control]), ("MoveFree", document, drawn)]
+    if options.separation:
+        groups[1] = ("MoveFree", document, drawn[: options.control])
+        groups.append((MONITORED, with_separation_monitoring(document), drawn))
+    trials = {group: _group(cell, motions, some, group=group, speed=speed, log=log) for group, cell, some in groups}
+    print(f"\n{_table(tuple(trials.items()))}")
     if options.json is not None:
-        everything = {"machine": machine(), "trials": [asdict(trial) for trial in (*control, *free)]}
+        everything = {"machine": machine(), "trials": [asdict(trial) for group in trials.values() for trial in group]}
         options.json.write_text(json.dumps(everything, indent=1) + "\n", encoding="utf-8")
 
 
