@@ -18,8 +18,9 @@ import argparse
 import asyncio
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -48,6 +49,7 @@ REACTION_S = 0.25
 _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ENDS = (Pose(xyz=(1.1, -0.7, 1.0), xyzw=_DOWN), Pose(xyz=(1.1, 0.7, 1.0), xyzw=_DOWN))
 _TRIAL_S = 600.0
+_PER_CELL = 50
 
 MONITORED = "monitored"
 """The group with speed and separation monitoring, in which MoveFree and JointTrapVel take turns."""
@@ -91,7 +93,7 @@ async def _undisturbed(document: Cell, speed: float) -> UndisturbedMotions:
 async def _trials(
     document: Cell,
     motions: UndisturbedMotions,
-    intrusions: Sequence[Numbered],
+    intrusions: Iterable[Numbered],
     *,
     group: str,
     speed: float,
@@ -131,7 +133,8 @@ def _adapts(group: str, number: int) -> bool:
 def _group(
     document: Cell,
     motions: UndisturbedMotions,
-    drawn: Sequence[Numbered],
+    draw: Callable[[int], Intrusion],
+    numbers: Sequence[int],
     *,
     group: str,
     speed: float,
@@ -139,13 +142,14 @@ def _group(
 ) -> list[Trial]:
     """Carry out all that the log does not have; after one that ended badly the next begins in a new cell."""
     done = [trial for trial in _logged(log) if trial.group == group]
-    numbers = {trial.number for trial in done}
-    left = [one for one in drawn if one[0] not in numbers]
+    known = {trial.number for trial in done}
+    left = [number for number in numbers if number not in known]
     while left:
-        carried_out = run_virtual(_trials(document, motions, left, group=group, speed=speed, log=log))
+        some = ((number, draw(number)) for number in left[:_PER_CELL])
+        carried_out = run_virtual(_trials(document, motions, some, group=group, speed=speed, log=log))
         left = left[len(carried_out) :]
         done += carried_out
-    return done
+    return sorted(done, key=lambda trial: trial.number)
 
 
 def _logged(log: Path | None) -> list[Trial]:
@@ -220,24 +224,30 @@ def main() -> None:
         document = with_people_from_afar(document)
     motions = run_virtual(_undisturbed(document, options.speed))
     drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + motions.stopping_s)
-    random = np.random.default_rng(options.seed)
-    drawn = [(number, drawer.draw(motions.of(number), random)) for number in range(options.runs)]
+
+    @cache
+    def draw(number: int) -> Intrusion:
+        """Return the intrusion of a number, whatever else is drawn."""
+        return drawer.draw(motions.of(number), np.random.default_rng((options.seed, number)))
+
+    numbers = options.only or list(range(options.runs))
     if options.avoidable_by:
-        drawn = [one for one in drawn if one[1].avoidable_by == options.avoidable_by]
-    if options.only:
-        drawn = [one for one in drawn if one[0] in options.only]
+        numbers = [number for number in numbers if draw(number).avoidable_by == options.avoidable_by]
     print(
         f"{document.name}: there {motions.there.duration_s:.2f} s, back {motions.back.duration_s:.2f} s; "
-        f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} "
-        f"places drawn that are in reach, {drawer.beside} are beside the path. {machine()}.\n",
+        f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken). {machine()}.\n",
         flush=True,
     )
     speed, log = options.speed, options.log
-    groups = [("JointTrapVel", document, drawn[: options.control]), ("MoveFree", document, drawn)]
+    groups = [("JointTrapVel", document, numbers[: options.control]), ("MoveFree", document, numbers)]
     if options.separation:
-        groups[1] = ("MoveFree", document, drawn[: options.control])
-        groups.append((MONITORED, with_separation_monitoring(document), drawn))
-    trials = {group: _group(cell, motions, some, group=group, speed=speed, log=log) for group, cell, some in groups}
+        groups[1] = ("MoveFree", document, numbers[: options.control])
+        groups.append((MONITORED, with_separation_monitoring(document), numbers))
+    trials = {
+        group: _group(cell, motions, draw, some, group=group, speed=speed, log=log) for group, cell, some in groups
+    }
+    if drawer.drawn:
+        print(f"\nOf {drawer.drawn} places drawn that are in reach, {drawer.beside} are beside the path.")
     print(f"\n{_table(tuple(trials.items()))}")
     if options.json is not None:
         everything = {"machine": machine(), "trials": [asdict(trial) for group in trials.values() for trial in group]}

@@ -15,7 +15,7 @@ from robots.port import Array, MeasuredSeparation, PermittedSpeed, SeparationRul
 _SHARES = np.linspace(0.0, 1.0, 51)
 # Part of v T by which a stop of the duration T from the speed v moves at most: half, as its deceleration fades longer
 # than it rises, and what a bent path adds.
-_STOP_SHARE = 0.6
+STOP_SHARE = 0.6
 # A slower motion than that stands still, and one that stands still starts from more.
 _LEAST_SHARE, _STARTING_SHARE = 0.02, 0.05
 # The permitted share rises by that per second: measured distances vary with the voxels.
@@ -107,4 +107,4 @@ class SeparationMonitor:
         assert self._speed is not None
         speed_m_s = self._speed.fastest_m_s(measured.extents_m) * _SHARES
         stop_s = self._stops.time_s(self._speed.joints_rad_s, _SHARES)
-        return speed_m_s, stop_s, _STOP_SHARE * speed_m_s * stop_s
+        return speed_m_s, stop_s, STOP_SHARE * speed_m_s * stop_s
