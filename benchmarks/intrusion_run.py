@@ -17,6 +17,7 @@ from engine.bus import GoalEnd, GoalHandle, GoalStatus, SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import Cell
 from engine.messages import JointState
+from engine.messages.separation import SeparationState
 from engine.skills.motion import JointTrapVel
 from engine.skills.people import ContactCount, CountContacts, Reach, Withdraw
 from engine.skills.planning import Adaptation, FreeMotionFeedback, FreeMotionResult, MotionTarget, MoveFree, PlanOptions
@@ -33,6 +34,7 @@ _LOOK_S = 0.01
 _MOVES_RAD_S = 0.01
 _PATIENCE_S = 120.0
 _LONGEST_S = 60.0
+_HELD_UP_SHARE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,12 +167,18 @@ class IntrudedCell:
             await self.bus.clock.sleep(_LOOK_S)
             now_s, feedback = self.bus.clock.now_s(), handle.feedback
             waits = isinstance(feedback, FreeMotionFeedback) and feedback.phase in ("waiting", "planning")
+            waits = waits or self._is_held_up()
             waiting_since_s = (waiting_since_s or now_s) if waits else None
             if stays and waiting_since_s is not None and now_s - waiting_since_s > WAITS_S:
                 return _so_far(feedback, "waiting")
             if now_s - started_s > _LONGEST_S:
                 return {"end": "failed", "reason": f"no end after {_LONGEST_S:g} s"}
         return _ended(await handle.result())
+
+    def _is_held_up(self) -> bool:
+        """Return whether separation monitoring permits hardly any speed."""
+        state = self.bus.topic(f"{self.arm}/separation", SeparationState).latest
+        return state is not None and state.monitoring and state.permitted_share < _HELD_UP_SHARE
 
     async def _cleared(self, handle: GoalHandle[Any, Any], person: str) -> bool:
         """Take the hand away and let the arm go on to its goal; false when it does not get there."""

@@ -5,6 +5,9 @@ near a random place of the path that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s
 time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same paths with
 the same intrusions and does not look out: it must show contacts, or the others mean nothing.
 
+With `--separation` people come from 1.3 m away, where cameras see them, and all intrusions are also carried out with
+speed and separation monitoring (`monitored`), by motions that look out and motions that do not in turns.
+
 Every drawn hand that gets into the path is executed and counted, by what could avoid a contact (`Avoidability`):
 braking, only having been slower (ISO 13855: the person comes within the minimum distance), or nothing the arm does.
 """
@@ -15,8 +18,9 @@ import argparse
 import asyncio
 import json
 import time
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -25,6 +29,11 @@ import numpy as np
 
 from benchmarks.comparison import machine
 from benchmarks.intrusion_drawing import Avoidability, Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_layout import (
+    with_people_from_afar,
+    with_people_on_both_sides,
+    with_separation_monitoring,
+)
 from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
@@ -40,6 +49,10 @@ REACTION_S = 0.25
 _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ENDS = (Pose(xyz=(1.1, -0.7, 1.0), xyzw=_DOWN), Pose(xyz=(1.1, 0.7, 1.0), xyzw=_DOWN))
 _TRIAL_S = 600.0
+_PER_CELL = 50
+
+MONITORED = "monitored"
+"""The group with speed and separation monitoring, in which MoveFree and JointTrapVel take turns."""
 
 Numbered = tuple[int, Intrusion]
 
@@ -78,7 +91,13 @@ async def _undisturbed(document: Cell, speed: float) -> UndisturbedMotions:
 
 
 async def _trials(
-    document: Cell, motions: UndisturbedMotions, intrusions: Sequence[Numbered], *, group: str, speed: float
+    document: Cell,
+    motions: UndisturbedMotions,
+    intrusions: Iterable[Numbered],
+    *,
+    group: str,
+    speed: float,
+    log: Path | None,
 ) -> list[Trial]:
     """Carry out intrusions in a cell until one ends badly."""
     done: list[Trial] = []
@@ -88,7 +107,7 @@ async def _trials(
             await cell.free(MotionTarget(joints=undisturbed.start))
             started_s = time.process_time()
             async with asyncio.timeout(_TRIAL_S):
-                ended = await cell.intruded(undisturbed, intrusion, adapts=group == "MoveFree")
+                ended = await cell.intruded(undisturbed, intrusion, adapts=_adapts(group, number))
             trial = Trial(
                 group=group,
                 number=number,
@@ -98,28 +117,45 @@ async def _trials(
             )
             done.append(trial)
             print(_line(trial), flush=True)
+            if log is not None:
+                with log.open("ab") as file:
+                    file.write(msgspec.json.encode(trial) + b"\n")
             if ended.end in ("failed", "stuck") or ended.contacts:
                 break
     return done
 
 
-def _with_people_on_both_sides(cell: Cell) -> Cell:
-    """Return the cell with each person once more, mirrored at the plane y = 0."""
-    people = dict(cell.document.people)
-    for name, person in cell.document.people.items():
-        (sx, sy, sz), (hx, hy, hz) = person.shoulder, person.hand_rests
-        people[f"{name}_across"] = msgspec.structs.replace(person, shoulder=(sx, -sy, sz), hand_rests=(hx, -hy, hz))
-    return replace(cell, document=msgspec.structs.replace(cell.document, people=people))
+def _adapts(group: str, number: int) -> bool:
+    """Return whether the motion is a MoveFree: all, none, or with separation monitoring both in turns."""
+    return number // 2 % 2 == 0 if group == MONITORED else group == "MoveFree"
 
 
 def _group(
-    document: Cell, motions: UndisturbedMotions, drawn: Sequence[Numbered], *, group: str, speed: float
+    document: Cell,
+    motions: UndisturbedMotions,
+    draw: Callable[[int], Intrusion],
+    numbers: Sequence[int],
+    *,
+    group: str,
+    speed: float,
+    log: Path | None = None,
 ) -> list[Trial]:
-    """Carry out all; after one that ended badly the next begins in a new cell."""
-    done: list[Trial] = []
-    while len(done) < len(drawn):
-        done += run_virtual(_trials(document, motions, drawn[len(done) :], group=group, speed=speed))
-    return done
+    """Carry out all that the log does not have; after one that ended badly the next begins in a new cell."""
+    done = [trial for trial in _logged(log) if trial.group == group]
+    known = {trial.number for trial in done}
+    left = [number for number in numbers if number not in known]
+    while left:
+        some = ((number, draw(number)) for number in left[:_PER_CELL])
+        carried_out = run_virtual(_trials(document, motions, some, group=group, speed=speed, log=log))
+        left = left[len(carried_out) :]
+        done += carried_out
+    return sorted(done, key=lambda trial: trial.number)
+
+
+def _logged(log: Path | None) -> list[Trial]:
+    if log is None or not log.exists():
+        return []
+    return [msgspec.json.decode(line, type=Trial) for line in log.read_bytes().splitlines()]
 
 
 def _line(trial: Trial) -> str:
@@ -175,28 +211,46 @@ def main() -> None:
     parser.add_argument("--avoidable-by", choices=get_args(Avoidability), help="carry out these of the drawing only")
     parser.add_argument("--speed", type=float, default=0.3, help="share of the joint speed limits (default 0.3)")
     parser.add_argument("--cell", type=Path, default=CELL, help="a cell of one arm with people on one side")
+    parser.add_argument(
+        "--separation",
+        action="store_true",
+        help="people come from afar; run the intrusions with speed and separation monitoring too",
+    )
+    parser.add_argument("--log", type=Path, help="append each trial to this file, and carry out only what it lacks")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
     options = parser.parse_args()
-    document = _with_people_on_both_sides(load_cell(options.cell))
+    document = with_people_on_both_sides(load_cell(options.cell))
+    if options.separation:
+        document = with_people_from_afar(document)
     motions = run_virtual(_undisturbed(document, options.speed))
     drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + motions.stopping_s)
-    random = np.random.default_rng(options.seed)
-    drawn = [(number, drawer.draw(motions.of(number), random)) for number in range(options.runs)]
+
+    @cache
+    def draw(number: int) -> Intrusion:
+        """Return the intrusion of a number, whatever else is drawn."""
+        return drawer.draw(motions.of(number), np.random.default_rng((options.seed, number)))
+
+    numbers = options.only or list(range(options.runs))
     if options.avoidable_by:
-        drawn = [one for one in drawn if one[1].avoidable_by == options.avoidable_by]
-    if options.only:
-        drawn = [one for one in drawn if one[0] in options.only]
+        numbers = [number for number in numbers if draw(number).avoidable_by == options.avoidable_by]
     print(
         f"{document.name}: there {motions.there.duration_s:.2f} s, back {motions.back.duration_s:.2f} s; "
-        f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} "
-        f"places drawn that are in reach, {drawer.beside} are beside the path. {machine()}.\n",
+        f"the arm stops within {motions.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken). {machine()}.\n",
         flush=True,
     )
-    control = _group(document, motions, drawn[: options.control], group="JointTrapVel", speed=options.speed)
-    free = _group(document, motions, drawn, group="MoveFree", speed=options.speed)
-    print(f"\n{_table((('JointTrapVel (control)', control), ('MoveFree', free)))}")
+    speed, log = options.speed, options.log
+    groups = [("JointTrapVel", document, numbers[: options.control]), ("MoveFree", document, numbers)]
+    if options.separation:
+        groups[1] = ("MoveFree", document, numbers[: options.control])
+        groups.append((MONITORED, with_separation_monitoring(document), numbers))
+    trials = {
+        group: _group(cell, motions, draw, some, group=group, speed=speed, log=log) for group, cell, some in groups
+    }
+    if drawer.drawn:
+        print(f"\nOf {drawer.drawn} places drawn that are in reach, {drawer.beside} are beside the path.")
+    print(f"\n{_table(tuple(trials.items()))}")
     if options.json is not None:
-        everything = {"machine": machine(), "trials": [asdict(trial) for trial in (*control, *free)]}
+        everything = {"machine": machine(), "trials": [asdict(trial) for group in trials.values() for trial in group]}
         options.json.write_text(json.dumps(everything, indent=1) + "\n", encoding="utf-8")
 
 

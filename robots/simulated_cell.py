@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from msgspec.structs import replace
+
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.document import Cell
@@ -21,6 +23,8 @@ from robots.standard_tools.tool_simulation import tool_server
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.planning_services import PlanningServices
+from robots.workspace.separation_rule import separation_rule
+from robots.workspace.separation_supervisor import SeparationSupervisor
 from robots.workspace.unknown_space import UnknownSpaceRule
 from robots.workspace.workspace import Workspace
 from robots.workspace.world_snapshot import WorldPoseReader
@@ -36,7 +40,8 @@ def new_world(
     Raises:
         CellError: a model is unknown, or a size or gripper does not fit.
     """
-    scene = build_scene(cell.document, seed=seed, resolve=cell.resolve)
+    rule = separation_rule(cell.document)
+    scene = replace(build_scene(cell.document, seed=seed, resolve=cell.resolve), separation=rule)
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
@@ -48,7 +53,13 @@ def new_world(
             unknown_space=UnknownSpaceRule.of(cell.document.occupancy, cameras=cell.document.cameras),
         )
         arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
-        return (*((cameras,) if cameras is not None else ()), workspace, *arms)
+        devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
+        if rule is not None and cameras is not None:
+            look = WorldPoseReader(world, scene)
+            devices += (
+                SeparationSupervisor(world, scene, sensor=cameras, workspace=workspace, look=look, clock=bus.clock),
+            )
+        return (*devices, *arms)
 
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line)
 

@@ -46,6 +46,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "suspect-unit": ("warning", "a number is so large that its unit is probably wrong"),
     "range-too-wide": ("warning", "a parameter allows values that the parameter it is passed to refuses"),
     "unknown-model": ("error", "no robot or gripper model has this name, or its folder cannot be used"),
+    "person-beyond-map": ("warning", "separation monitoring does not measure a person who stands beyond the map"),
     "unseen-space-accepted": ("warning", "motions may pass through space that no camera of the cell has seen"),
     "unknown-driver": ("error", "no driver has this name"),
     "bad-declaration": ("error", "a parameter of the behavior is declared inconsistently"),

@@ -15,7 +15,13 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, UnknownBody
+from engine.document.cell_perception import (
+    DepthCamera,
+    OccupancyMap,
+    Person,
+    SpeedAndSeparationMonitoring,
+    UnknownBody,
+)
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.document.text.decoding import StrictModel, decode_document
@@ -185,6 +191,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     parts: dict[Name, PartSpec] = {}
     cameras: dict[Name, DepthCamera] = {}
     occupancy: OccupancyMap | None = None
+    speed_and_separation_monitoring: SpeedAndSeparationMonitoring | None = None
     people: dict[Name, Person] = {}
     unknown_bodies: dict[Name, UnknownBody] = {}
     topics: Annotated[
@@ -367,6 +374,12 @@ def _require_regions(document: CellDocument, source: DocumentSource) -> None:
             "regions must be covered, but the cell has no camera",
             where=source.position(("occupancy", "must_cover"), of_key=True),
             hint="add `cameras:`",
+        )
+    if document.speed_and_separation_monitoring and not (document.cameras and document.occupancy):
+        raise DocumentError(
+            "nothing measures the distance of people",
+            where=source.position(("speed_and_separation_monitoring",), of_key=True),
+            hint="add `cameras:` and `occupancy:`",
         )
 
 

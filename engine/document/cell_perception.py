@@ -114,6 +114,21 @@ class OccupancyMap(StrictModel, frozen=True, kw_only=True):
         return self.unknown_space or ("refuse" if self.must_cover else "accept")
 
 
+class SpeedAndSeparationMonitoring(StrictModel, frozen=True, kw_only=True):
+    """The speed of all arms follows their distance from unknown bodies in the occupancy map (ISO/TS 15066, 5.5.4).
+
+    `hand_speed_m_s` is how fast people approach. `reaction_s` is at least the reaction time that follows from the
+    cameras. `intrusion_distance_m` is how far a person enters before being measured; by default it follows from the
+    edge of the voxels (ISO 13855). `position_uncertainty_m` is that of measured people and of the arm together. It is
+    no certified safety function.
+    """
+
+    hand_speed_m_s: Annotated[float, Meta(ge=0.1, le=5.0, description="Speed of an approaching hand in m/s")] = 1.6
+    reaction_s: Annotated[float, Meta(gt=0.0, le=5.0, description="Least reaction time in seconds")] | None = None
+    intrusion_distance_m: Offset | None = None
+    position_uncertainty_m: Offset = 0.03
+
+
 class UnknownBody(StrictModel, frozen=True, kw_only=True):
     """A body of the simulated world that nobody knows of: cameras see it, arms collide with it, and that is all.
 
@@ -136,8 +151,8 @@ def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[
 class Person(StrictModel, frozen=True, kw_only=True):
     """One arm of a person in a simulated cell: it reaches from `shoulder` and rests at `hand_rests`.
 
-    The arm consists of two capsules and a ball with the dimensions of an adult; it moves kinematically, without
-    contact response. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
+    The arm consists of two capsules and a ball with the dimensions of an adult; it gives way to what pushes it and
+    stops at fixtures. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
     """
 
     shoulder: PositionXyz

@@ -22,11 +22,12 @@ from robots.control.laws.torque_blend import TorqueBlend
 from robots.control.momentum_observer import MomentumObserver
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTripped
 from robots.control.motion_executor import MotionExecutor
+from robots.control.separation.separation_monitor import SeparationMonitor
 from robots.control.set_point_watch import SetPointWatch
 from robots.model.mechanics.dynamics import ArmDynamics
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
-from robots.port import Array, MotionEnd, MotionReport, Tolerance
+from robots.port import Array, MotionEnd, MotionReport, SeparationRule, Tolerance
 
 # Measured forces pass this low-pass filter, as in wrist sensors.
 _FELT_HZ = 60.0
@@ -48,6 +49,7 @@ class ArmControlLoop:
         touching: Describes what the arm touches; empty for nothing.
         on_jump: What follows a set point beyond the limits. `report`, in simulation, sends it and reports it; `stop`,
             for real arms, never sends it: the arm brakes from the last one, and its motion fails with the cause.
+        separation: The rule of speed and separation monitoring, None without it.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class ArmControlLoop:
         gravity_m_s2: Array,
         touching: Callable[[], str],
         on_jump: Literal["report", "stop"] = "report",
+        separation: SeparationRule | None = None,
     ) -> None:
         from robots.control import kernels
 
@@ -81,6 +84,8 @@ class ArmControlLoop:
         self.watch = SetPointWatch(arm=name, joints=model.arm_joints, limits=limits)
         """Compares every set point with the limits."""
         self._on_jump = on_jump
+        self.separation = SeparationMonitor(separation, kinematics=kinematics.twin()) if separation else None
+        """Speed and separation monitoring, if the cell has it."""
         self._reflex = CollisionReflex(joints=model.arm_joints, touching=touching)
         cartesian = CartesianImpedance(
             limits, mass_matrix=kinematics.mass_matrix, base_rotation=kinematics.base.rotation
@@ -124,6 +129,8 @@ class ArmControlLoop:
         self.state.wrench[:] = 0.0
         self._load.forget_motion()
         self._untold.clear()
+        if self.separation is not None:
+            self.separation.forget()
         self._reflex.reason = "it had stopped before" if reflex else ""
         self._law = self._selected_law()
         self._blend.forget()
@@ -191,6 +198,9 @@ class ArmControlLoop:
         if self.motion.leads and self._reflex.trips(self.state):
             self.motion.fail(self._reflex.reason)
             events.append(ReflexTripped(motion=self.motion.number, arm=self.name, reason=self._reflex.reason))
+        if self.separation is not None:
+            motion = self.motion
+            motion.permitted_pace = self.separation.permitted_share(step_s, motion.generator, motion.position)
         events.extend(self.motion.step(step_s, self.state))
         jump = self.watch.look(step_s, self.motion)
         if jump is not None:

@@ -41,7 +41,8 @@ class MotionExecutor:
     """The set point of one arm; without a motion it is constant.
 
     `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
-    control period with the measured arm. `pace` is the speed override of every motion.
+    control period with the measured arm. `pace` is the speed override of every motion, `permitted_pace` the share of
+    its full speed that separation monitoring permits.
     """
 
     def __init__(self, *, joints: tuple[str, ...], limits: JointLimits, touching: Callable[[], str]) -> None:
@@ -51,6 +52,7 @@ class MotionExecutor:
         self._following: _ActiveMotion | None = None
         self._rest_s = 0.0
         self.pace = 1.0
+        self.permitted_pace = 1.0
         self._yielding: YieldGenerator | None = None
         self.position = np.zeros(len(joints))
         self.velocity = np.zeros(len(joints))
@@ -66,6 +68,11 @@ class MotionExecutor:
     def number(self) -> int:
         """Number of the active motion, 0 for none."""
         return self._following.number if self._following else 0
+
+    @property
+    def generator(self) -> MotionGenerator | None:
+        """The generator of the active motion, None without one."""
+        return self._following.generator if self._following else None
 
     @property
     def generator_name(self) -> str:
@@ -163,7 +170,8 @@ class MotionExecutor:
             self._yielding.step(step_s, position)
             self._take(self._yielding)
         else:
-            target = 0.0 if following.hold or following.ending is not None else self.pace
+            pace = min(self.pace, self.permitted_pace)
+            target = 0.0 if following.hold or following.ending is not None else pace
             following.generator.step(step_s, target_pace=target, state=state)
             self._take(following.generator)
             if following.generator.failure:

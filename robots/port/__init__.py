@@ -14,6 +14,7 @@ from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import OutputPort
+from robots.port.separation import MeasuredSeparation, PermittedSpeed, SeparationRule
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
 __all__ = [
@@ -29,11 +30,14 @@ __all__ = [
     "HandPort",
     "HandSample",
     "JointTrajectory",
+    "MeasuredSeparation",
     "Motion",
     "MotionEnd",
     "MotionReport",
     "MotionStream",
     "OutputPort",
+    "PermittedSpeed",
+    "SeparationRule",
     "StreamKind",
     "Tolerance",
 ]

@@ -15,6 +15,7 @@ from engine.document import RealismName, arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
+from robots.port import SeparationRule
 from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 
 Rgba = tuple[float, float, float, float]
@@ -89,8 +90,8 @@ class PartBody(msgspec.Struct, frozen=True, kw_only=True):
 class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
     """A person's arm: `shoulder` is fixed; the centre of the hand, a ball, starts at `hand_rests`.
 
-    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the centre of the hand. Its motion is
-    prescribed: it passes through fixtures and other people, and collides with robots and parts.
+    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the centre of the hand. It follows its motion
+    where nothing pushes it off, and passes through other people only.
     """
 
     name: str
@@ -113,6 +114,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
     other side reacts, see `robots.port.control_process`; `start_limit_s` limits how long its process builds the world.
     The unknown bodies are in the physics and in images of cameras, but in no planning scene and among no parts.
+    With `separation` the speed of all arms follows their measured distance from people.
     The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
     """
 
@@ -129,3 +131,4 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     people: tuple[PersonBody, ...] = ()
     unknown_fixtures: tuple[FixtureBody, ...] = ()
     unknown_parts: tuple[PartBody, ...] = ()
+    separation: SeparationRule | None = None

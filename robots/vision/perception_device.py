@@ -90,6 +90,11 @@ class PerceptionDevice:
         return self.map.stale_reason
 
     @property
+    def age_s(self) -> float:
+        """Age of the latest images in the map, infinite without any."""
+        return self.map.age_s
+
+    @property
     def starting(self) -> bool:
         """Whether the cameras are still starting."""
         return self.map.starting

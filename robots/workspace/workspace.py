@@ -28,7 +28,7 @@ from engine.skills.planning_scene import (
     RemoveObstacle,
 )
 from robots.planning.request import CollisionRequest
-from robots.planning.scene.planning_scene import PlanningScene
+from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 from robots.port import GraspCommand
 from robots.vision.occupancy.occupancy_source import OccupancySource
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
@@ -145,6 +145,11 @@ class Workspace:
         if self._live is None:
             return any(memo.part.arm == arm for memo in self._early_memo.held)
         return self._live.holds(arm)
+
+    def attached_to(self, arm: str) -> tuple[AttachedPart, ...]:
+        """Return the parts that an arm held at the last measurement."""
+        held = self._live.whole().attached if self._live is not None and self._live.holds(arm) else ()
+        return tuple(part for part in held if part.arm == arm)
 
     def lies(self, arm: str) -> bool:
         """Return whether a part held by an arm still touches what it was picked from; await `ready` first."""

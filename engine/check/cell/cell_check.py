@@ -34,6 +34,7 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
             path: DataPath = ("cameras", camera, "detect", "labels", part)
             findings += _missing(names, "part", part, cell.source.position(path, of_key=True))
     findings += _check_unknown_space(cell)
+    findings += _check_separation(cell)
     findings += _check_seed(cell, names)
     return tuple(sorted(findings, key=finding_sort_key))
 
@@ -58,6 +59,21 @@ def _check_unknown_space(cell: Cell) -> Iterator[Finding]:
     message = "motions may pass through space that no camera has seen"
     hint = "name what the cameras must see in `must_cover`, or choose `unknown_space`"
     yield new_finding("unseen-space-accepted", message, path="", position=position, hint=hint)
+
+
+def _check_separation(cell: Cell) -> Iterator[Finding]:
+    document, occupancy = cell.document, cell.document.occupancy
+    if document.speed_and_separation_monitoring is None or occupancy is None:
+        return
+    for name, person in document.people.items():
+        for key, point in (("shoulder", person.shoulder), ("hand_rests", person.hand_rests)):
+            edges = zip(point, occupancy.center_m, occupancy.size_m, strict=True)
+            beyond_m = max(abs(at - centre) - size / 2.0 for at, centre, size in edges)
+            if beyond_m > 0.0:
+                position = cell.source.position(("people", name, key))
+                message = f"the {key} of person `{name}` is {beyond_m:.2f} m beyond the map, where nothing is measured"
+                hint = "make the box of `occupancy` larger, so that people are measured before they are near"
+                yield new_finding("person-beyond-map", message, path="", position=position, hint=hint)
 
 
 def _check_driver(cell: Cell, robot: str, entry: RobotSpec) -> Iterator[Finding]:

@@ -34,7 +34,8 @@ class GuardedMotion:
     """For messages."""
 
     def __init__(self, inner: MotionGenerator, contact: ContactCondition) -> None:
-        self._inner = inner
+        self.inner = inner
+        """The motion that a contact ends."""
         self._force_n = contact.force_n
         self._direction = np.array(contact.direction, dtype=np.float64)
         self._any_direction = not self._direction.any()
@@ -50,17 +51,17 @@ class GuardedMotion:
     @property
     def stopped(self) -> bool:
         """True when the set point stands still."""
-        return self._inner.stopped
+        return self.inner.stopped
 
     @property
     def moving(self) -> bool:
         """True once it moves again, or nothing is left to do."""
-        return self._touched or self._inner.moving
+        return self._touched or self.inner.moving
 
     @property
     def complete(self) -> bool:
         """True at the end of the motion, and after the stop at a contact."""
-        return self._inner.complete or (self._touched and self._inner.stopped)
+        return self.inner.complete or (self._touched and self.inner.stopped)
 
     @property
     def contact(self) -> bool:
@@ -70,22 +71,22 @@ class GuardedMotion:
     @property
     def progress(self) -> float:
         """Completed share of the motion."""
-        return self._inner.progress
+        return self.inner.progress
 
     @property
     def goal(self) -> Array | None:
         """Goal of the inner motion; None after a contact."""
-        return None if self._touched else self._inner.goal
+        return None if self._touched else self.inner.goal
 
     @property
     def leads(self) -> bool:
         """As the inner motion."""
-        return self._inner.leads
+        return self.inner.leads
 
     @property
     def failure(self) -> str:
         """As the inner motion."""
-        return self._inner.failure
+        return self.inner.failure
 
     def data(self) -> bytes:
         """Return the greatest contact force from the start on, N, encoded; see `decode_peak_n`."""
@@ -98,7 +99,7 @@ class GuardedMotion:
         if not self._touched and target_pace > 0.0:
             self._pushed_s = self._pushed_s + step_s if pushed >= self._force_n else 0.0
             self._touched = self._pushed_s >= _DEBOUNCE_S
-        self._inner.step(step_s, target_pace=0.0 if self._touched else target_pace, state=state)
+        self.inner.step(step_s, target_pace=0.0 if self._touched else target_pace, state=state)
 
     def _push_n(self, step_s: float, force: Array) -> float:
         """Return the contact force of this period, 0 while the tare is measured."""

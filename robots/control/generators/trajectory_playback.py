@@ -107,6 +107,11 @@ class TrajectoryPlayback:
         """Nothing is recorded."""
         return b""
 
+    @property
+    def path(self) -> tuple[Array, Array]:
+        """Positions and velocities at the nominal pace, each (samples, n)."""
+        return self._points, self._slopes
+
     def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
         """Advance by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
         if self.passed_s == 0.0:

@@ -80,6 +80,13 @@ class ArmKinematics:
             )
         return pose, self._turn @ jacobian
 
+    def link_speeds(self, joints: Array, velocity: Array) -> Array:
+        """Return the speed of the origin (m/s) and the angular speed (rad/s) of the link behind each joint, (n, 2)."""
+        pin.forwardKinematics(self._solver, self._data, joints, velocity)
+        motions = [self._data.v[joint] for joint in range(1, self._solver.njoints)]
+        rows = [(float(np.linalg.norm(one.linear)), float(np.linalg.norm(one.angular))) for one in motions]
+        return np.array(rows, dtype=np.float64)
+
     def dexterity(self, joints: Array) -> float:
         """Return the distance to a singularity: the smallest singular value of the Jacobian.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from engine.skills.arm_control import ControlSettings
-from robots.port import ContactCondition, ForceTask, JointTrajectory, StreamKind, Tolerance
+from robots.port import ContactCondition, ForceTask, JointTrajectory, MeasuredSeparation, StreamKind, Tolerance
 
 
 class SimCommand(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
@@ -70,10 +70,24 @@ class ConfigureArm(CommandToArm, frozen=True, kw_only=True, tag="configure"):
     settings: ControlSettings
 
 
+class MeasureSeparation(CommandToArm, frozen=True, kw_only=True, tag="measure_separation"):
+    """Use this measured distance for speed and separation monitoring."""
+
+    measured: MeasuredSeparation
+
+
 class RecoverArm(CommandToArm, frozen=True, kw_only=True, tag="recover"):
     """End a reflex stop."""
 
 
 ArmCommand = (
-    FollowTrajectory | TrackForce | StartStream | StartGuiding | Setpoint | FinishStream | ConfigureArm | RecoverArm
+    FollowTrajectory
+    | TrackForce
+    | StartStream
+    | StartGuiding
+    | Setpoint
+    | FinishStream
+    | ConfigureArm
+    | RecoverArm
+    | MeasureSeparation
 )

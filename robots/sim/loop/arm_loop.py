@@ -16,12 +16,13 @@ from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.control.motion_event import AnyMotionEvent
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
-from robots.port import Array, Tolerance
+from robots.port import Array, SeparationRule, Tolerance
 from robots.sim.commands.arm_commands import (
     ArmCommand,
     ConfigureArm,
     FinishStream,
     FollowTrajectory,
+    MeasureSeparation,
     RecoverArm,
     Setpoint,
     StartGuiding,
@@ -50,6 +51,7 @@ class SimArmLoop:
         physics: Physics,
         contacts: ContactReader,
         hardware: ArmHardware,
+        separation: SeparationRule | None = None,
     ) -> None:
         model = indices.model
         self.indices = indices
@@ -65,6 +67,7 @@ class SimArmLoop:
             kinematics=ArmKinematics(model, base=base),
             gravity_m_s2=physics.gravity_m_s2,
             touching=lambda: contacts.describe(indices),
+            separation=separation,
         )
         self.control.initialize(physics.positions[indices.qpos])
 
@@ -110,6 +113,9 @@ class SimArmLoop:
                 control.configure(command.settings)
             case RecoverArm():
                 control.recover()
+            case MeasureSeparation():
+                if control.separation is not None:
+                    control.separation.take(command.measured)
 
     def measured_joints(self, step: int) -> tuple[Array, Array]:
         """Return the measured joint positions and velocities, (n,), before this step."""

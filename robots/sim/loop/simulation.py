@@ -71,6 +71,7 @@ class Simulation:
                     seed=cell.scene.seed,
                     step_s=self.step_s,
                 ),
+                separation=cell.scene.separation,
             )
             for arm in cell.arms
         }
@@ -229,6 +230,9 @@ class Simulation:
         values[fields.number] = control.motion.number
         values[fields.progress] = control.motion.progress
         values[fields.reflex] = control.reflex
+        if control.separation is not None:
+            permitted = control.separation.permitted
+            values[fields.separation] = permitted.share, permitted.speed_m_s, permitted.protective_m
         values[fields.wrench] = control.state.wrench
         block = values[fields.joints].reshape(5, fields.dof)
         block[0], block[1] = arm.measured_joints(self.steps)

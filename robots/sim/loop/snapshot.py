@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from engine.messages import Quaternion, Vector3
-from robots.port import ArmSample, Array
+from robots.port import ArmSample, Array, PermittedSpeed
 from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.measures.measure_layout import MeasureLayout
@@ -45,11 +45,15 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class ArmFields:
-    """Positions of one arm's numbers: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` has six."""
+    """Positions of one arm's numbers: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` has six.
+
+    `separation` has the three numbers of `PermittedSpeed`.
+    """
 
     number: int
     progress: int
     reflex: int
+    separation: slice
     wrench: slice
     joints: slice
     dof: int
@@ -71,11 +75,19 @@ class SnapshotLayout:
         arms: dict[str, ArmFields] = {}
         for arm in summary.arms:
             n = len(arm.joints)
-            wrench = slice(at + 3, at + 9)
+            separation = slice(at + 3, at + 6)
+            wrench = slice(separation.stop, separation.stop + 6)
             joints = slice(wrench.stop, wrench.stop + 5 * n)
             tool = slice(joints.stop, joints.stop + (_TOOL_FIELDS + arm.tool.contacts if arm.tool else 0))
             arms[arm.name] = ArmFields(
-                number=at, progress=at + 1, reflex=at + 2, wrench=wrench, joints=joints, dof=n, tool=tool
+                number=at,
+                progress=at + 1,
+                reflex=at + 2,
+                separation=separation,
+                wrench=wrench,
+                joints=joints,
+                dof=n,
+                tool=tool,
             )
             at = tool.stop
         self.arms = arms
@@ -126,6 +138,15 @@ class SimSnapshot:
         """Progress of an arm's motion; None if the arm does not execute this motion."""
         fields = self._layout.arms[name]
         return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
+
+    def moves(self, name: str) -> bool:
+        """Return whether an arm has a motion, held or not."""
+        return self._values[self._layout.arms[name].number] != 0.0
+
+    def permitted(self, name: str) -> PermittedSpeed:
+        """Return what separation monitoring permits an arm."""
+        share, speed_m_s, protective_m = self._values[self._layout.arms[name].separation].tolist()
+        return PermittedSpeed(share=share, speed_m_s=speed_m_s, protective_m=protective_m)
 
     def tool(self, name: str) -> ToolReading:
         """Return the measurement of the tool on an arm."""

@@ -34,10 +34,12 @@ class ContactCounter:
     """The contact statistics of all people; `numbers` has one row per person, (people, `count_size`).
 
     A contact begins when two bodies touch that did not in the step before. The force of a pair is the sum of
-    the normal forces of its contact points.
+    the normal forces of its contact points. Contacts with the bodies in `fixed` do not count.
     """
 
-    def __init__(self, people: tuple[PersonIndices, ...], physics: Physics, *, body_count: int) -> None:
+    def __init__(
+        self, people: tuple[PersonIndices, ...], physics: Physics, *, body_count: int, fixed: frozenset[int]
+    ) -> None:
         self._physics = physics
         own = len(people[0].bodies)
         self.numbers = np.zeros((len(people), count_size(body_count, own)))
@@ -47,11 +49,13 @@ class ContactCounter:
         self._rows = rows
         self._touching = False
         self._is_person: NDArray[np.bool_] = np.array([body in rows for body in physics.geom_body], dtype=np.bool_)
+        self._is_fixed: NDArray[np.bool_] = np.array([body in fixed for body in physics.geom_body], dtype=np.bool_)
 
     def step(self, step_s: float) -> None:
         """Count the contacts of the step just done."""
         geoms = self._physics.contact_geoms()
-        hits = np.flatnonzero(self._is_person[geoms].any(axis=1)) if len(geoms) else ()
+        counts = self._is_person[geoms].any(axis=1) & ~self._is_fixed[geoms].any(axis=1) if len(geoms) else ()
+        hits = np.flatnonzero(counts)
         now: dict[tuple[int, int, int], float] = {}
         for hit in hits:
             index = int(hit)

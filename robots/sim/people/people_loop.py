@@ -9,14 +9,16 @@ from robots.port import Array
 from robots.sim.people.contact_counter import ContactCounter
 from robots.sim.people.person_motion import MOTION_FIELDS, PersonMotion
 from robots.sim.people.person_report import report_size
+from robots.sim.people.yielding import YIELDING_FIELDS, Yielding
 from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.limb import LimbPose
-from robots.sim.physics.person_spec import PersonIndices
 from robots.sim.physics.physics import Physics
+
+_FIELDS = MOTION_FIELDS + YIELDING_FIELDS
 
 
 class PeopleLoop:
-    """Steps all people of a world. In contacts their bodies have the velocity of their motion."""
+    """Steps all people of a world. Contacts push their arms off their motions, see `Yielding`."""
 
     def __init__(self, cell: CellModel, physics: Physics, *, step_s: float) -> None:
         self._physics = physics
@@ -26,11 +28,13 @@ class PeopleLoop:
         self._by_name = {person.name: row for row, person in enumerate(cell.people)}
         self._qpos = [_positions(person.pose) for person in self._people]
         self._qvel = [np.zeros(6 * len(person.bodies)) for person in cell.people]
+        self._yielding = [Yielding() for _ in cell.people]
+        self._placed = [qvel.copy() for qvel in self._qvel]
         body_count = len(cell.body_names)
-        self._counter = ContactCounter(cell.people, physics, body_count=body_count) if cell.people else None
+        self._counter = _counter(cell, physics)
         self.report_size = report_size(len(cell.people), body_count=body_count)
         count_size = self._counter.numbers.size if self._counter is not None else 0
-        self.image_size = MOTION_FIELDS * len(cell.people) + count_size
+        self.image_size = _FIELDS * len(cell.people) + count_size
 
     def send(self, request: Reach) -> None:
         """Send a hand to a point."""
@@ -38,52 +42,76 @@ class PeopleLoop:
 
     def place(self) -> None:
         """Set poses and velocities of the bodies for the next step."""
-        for person, indices, qpos, qvel in zip(self._people, self._indices, self._qpos, self._qvel, strict=True):
-            before = person.pose
+        for row, person in enumerate(self._people):
+            before, qpos, qvel = person.pose, self._qpos[row], self._qvel[row]
             if person.step():
                 qpos[:] = _positions(before)
                 qvel[:] = _velocities(before, person.pose, self._step_s)
-            self._put(indices, qpos, qvel)
+            self._put(row)
 
     def count(self) -> None:
-        """Count the contacts of the step just done."""
-        if self._counter is not None:
-            self._counter.step(self._step_s)
+        """Count the contacts of the step just done, and let them push."""
+        if self._counter is None:
+            return
+        self._counter.step(self._step_s)
+        for indices, placed, yielding in zip(self._indices, self._placed, self._yielding, strict=True):
+            pushed = self._physics.velocities[indices.dof] - placed
+            yielding.step(pushed.reshape(-1, 6)[:, :3], step_s=self._step_s)
 
     def write_report(self, values: Array) -> None:
         """Write the report for `robots.sim.people.person_report`, (`report_size`,)."""
         if self._counter is None:
             return
-        for person, row, numbers in zip(
-            self._people, values.reshape(len(self._people), -1), self._counter.numbers, strict=True
+        rows = values.reshape(len(self._people), -1)
+        for person, yielding, row, numbers in zip(
+            self._people, self._yielding, rows, self._counter.numbers, strict=True
         ):
             hand = person.hand
-            row[0:3], row[3:6], row[6] = hand.xyz, hand.velocity, person.arrives_in_s
+            row[0:3], row[3:6] = hand.xyz + yielding.offset, hand.velocity + yielding.velocity
+            row[6] = person.arrives_in_s
             row[7:] = numbers
 
     def write_image(self, image: Array) -> None:
         """Write the complete state of people and contact statistics, (`image_size`,)."""
         if self._counter is None:
             return
-        motions = image[: MOTION_FIELDS * len(self._people)].reshape(-1, MOTION_FIELDS)
-        for person, numbers in zip(self._people, motions, strict=True):
-            person.write(numbers)
+        motions = image[: _FIELDS * len(self._people)].reshape(-1, _FIELDS)
+        for person, yielding, numbers in zip(self._people, self._yielding, motions, strict=True):
+            person.write(numbers[:MOTION_FIELDS])
+            yielding.write(numbers[MOTION_FIELDS:])
         image[motions.size :] = self._counter.numbers.reshape(-1)
 
     def take_over(self, image: Array) -> None:
         """Continue from an image."""
         if self._counter is None:
             return
-        motions = image[: MOTION_FIELDS * len(self._people)].reshape(-1, MOTION_FIELDS)
-        for person, numbers, qpos, qvel in zip(self._people, motions, self._qpos, self._qvel, strict=True):
-            person.take_over(numbers)
+        motions = image[: _FIELDS * len(self._people)].reshape(-1, _FIELDS)
+        for person, yielding, numbers, qpos, qvel in zip(
+            self._people, self._yielding, motions, self._qpos, self._qvel, strict=True
+        ):
+            person.take_over(numbers[:MOTION_FIELDS])
+            yielding.take_over(numbers[MOTION_FIELDS:])
             qpos[:] = _positions(person.pose)
             qvel[:] = 0.0
         self._counter.take_over(image[motions.size :].reshape(self._counter.numbers.shape))
 
-    def _put(self, indices: PersonIndices, qpos: Array, qvel: Array) -> None:
+    def _put(self, row: int) -> None:
+        indices, yielding, placed = self._indices[row], self._yielding[row], self._placed[row]
+        qpos, placed[:] = self._qpos[row], self._qvel[row]
+        if yielding.active:
+            qpos = qpos.copy()
+            qpos.reshape(-1, 7)[:, :3] += yielding.offset
+            placed.reshape(-1, 6)[:, :3] += yielding.velocity
         self._physics.positions[indices.qpos] = qpos
-        self._physics.velocities[indices.dof] = qvel
+        self._physics.velocities[indices.dof] = placed
+
+
+def _counter(cell: CellModel, physics: Physics) -> ContactCounter | None:
+    if not cell.people:
+        return None
+    fixtures = {fixture.name for fixture in (*cell.scene.fixtures, *cell.scene.unknown_fixtures)}
+    fixed = frozenset(number for number, name in enumerate(cell.body_names) if number == 0 or name in fixtures)
+    return ContactCounter(cell.people, physics, body_count=len(cell.body_names), fixed=fixed)
 
 
 def _positions(pose: LimbPose) -> Array:

@@ -17,7 +17,7 @@ _FOR_EVER = -1.0
 
 
 class PersonMotion:
-    """The hand moves to its last goal and the bodies follow. Nothing stops it."""
+    """The hand moves to its last goal and the bodies follow. Contacts push the arm off this motion, see `Yielding`."""
 
     def __init__(self, person: PersonBody, *, step_s: float) -> None:
         self._rest = np.array(person.hand_rests)

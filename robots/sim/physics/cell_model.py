@@ -205,7 +205,7 @@ def _add_people(spec: Any, scene: SimScene) -> None:
         return
     for person in scene.people:
         add_person(spec, person)
-    let_people_touch(spec, (*scene.fixtures, *scene.unknown_fixtures))
+    let_people_touch(spec)
 
 
 def _links(model: Any, arm: str) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robots.scene.sim_scene import FixtureBody, PersonBody
+from robots.scene.sim_scene import PersonBody
 from robots.sim.physics.limb import BODIES, Limb
 from robots.sim.physics.physics import mujoco
 
@@ -18,9 +18,8 @@ FOREARM_SHARE = 0.8
 
 # Collides only with geometries marked for contact with people; models use low bits.
 _PEOPLE = 1 << 20
-# Bodies have this mass in contacts, at their velocity. A larger mass would only make MuJoCo's
-# solver stop earlier, as it measures its progress by the mean inertia.
-_MASS_KG = 20.0
+LIMB_KG = 3.0
+"""Mass with which each body of an arm meets others: about the effective mass of an arm in ISO/TS 15066, annex A."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,15 +52,14 @@ def add_person(spec: Any, person: PersonBody) -> None:
         body = spec.worldbody.add_body(name=name, pos=xyz.tolist(), quat=wxyz.tolist(), gravcomp=1.0)
         body.add_freejoint(name=name)
         geom = body.add_geom(name=name, type=kind, size=size, rgba=list(person.rgba))
-        geom.contype, geom.conaffinity, geom.mass = _PEOPLE, 0, _MASS_KG
+        geom.contype, geom.conaffinity, geom.mass = _PEOPLE, 0, LIMB_KG
 
 
-def let_people_touch(spec: Any, fixtures: tuple[FixtureBody, ...]) -> None:
-    """Enable contact of people with everything but fixtures and people; call it on the complete specification."""
-    fixed = {"world", *(fixture.name for fixture in fixtures)}
+def let_people_touch(spec: Any) -> None:
+    """Enable contact of people with everything but people; call it on the complete specification."""
     for geom in spec.geoms:
         touches_something = bool(geom.contype or geom.conaffinity)
-        if touches_something and geom.contype != _PEOPLE and geom.parent.name not in fixed:
+        if touches_something and geom.contype != _PEOPLE:
             geom.conaffinity |= _PEOPLE
 
 

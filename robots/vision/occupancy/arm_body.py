@@ -51,8 +51,17 @@ class ArmBody:
 
     def balls(self, posture: ArmConfiguration) -> Array:
         """Return the balls in the world, (k, 4); raises CellError for a posture of another arm."""
+        return np.vstack(list(self.link_balls(posture).values()))
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links with balls."""
+        return tuple(self._links)
+
+    def link_balls(self, posture: ArmConfiguration) -> dict[str, Array]:
+        """Return the balls of each link in the world, (k, 4); raises CellError for a posture of another arm."""
         self._move_to(posture)
-        return np.vstack([_moved(self._at(link.frame), link.balls) for link in self._links.values()])
+        return {name: _moved(self._at(link.frame), link.balls) for name, link in self._links.items()}
 
     def link_pose(self, posture: ArmConfiguration, link: str) -> RigidTransform:
         """Return the pose of a link in the world; raises CellError for an unknown link."""

@@ -36,13 +36,18 @@ class LiveOccupancyMap:
         """Why no images arrive; empty while they can."""
 
     @property
+    def age_s(self) -> float:
+        """Age of the latest images, infinite without any."""
+        return self._now_s() - self._looked_at_s
+
+    @property
     def stale_reason(self) -> str:
         """Why the map is not valid; empty while it is valid."""
         if self.lost_reason:
             return self.lost_reason
         if self.latest is None:
             return "the cameras are still starting" if self.starting else "no camera image yet"
-        age_s = self._now_s() - self._looked_at_s
+        age_s = self.age_s
         if math.isinf(age_s):
             return "no camera image since the cell was restored to an earlier state"
         return f"the latest image is {age_s:.1f} s old" if age_s > self._fresh_s else ""

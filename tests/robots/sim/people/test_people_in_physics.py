@@ -8,8 +8,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from robots.port import Array, JointTrajectory, Tolerance
 from robots.scene.sim_scene import PersonBody
+from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.commands.world_commands import RestoreWorld
+from robots.sim.people.yielding import GREATEST_PUSH_N
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, REST, SteppedPerson, with_anna
 from tests.robots.sim.sim_cell import box, one_arm
@@ -63,11 +66,58 @@ def test_a_hand_that_stays_for_a_while_goes_back_to_where_it_rests(person: Stepp
     assert person.sample.hand.xyz == pytest.approx(REST, abs=1e-9)
 
 
-def test_an_arm_goes_through_fixtures_and_that_is_no_contact(person: SteppedPerson) -> None:
+def test_a_hand_sent_into_a_fixture_stops_at_it_and_that_is_no_contact(person: SteppedPerson) -> None:
+    """The surface of the table is at 0, the ball of the hand has a radius of 5 cm."""
+    person.reach(IN_TABLE)
+    row = person.simulation.summary.frames.index("anna/hand")
+    heights: list[float] = []
+    for _ in range(1500):
+        person.run(0.001)
+        heights.append(float(person.snapshot().frames()[0][row][2]))
+    assert min(heights) > ANNA.radius_m - 0.008
+    assert heights[-1] == pytest.approx(ANNA.radius_m, abs=0.004)
+    assert person.sample.hand.xyz[2] == pytest.approx(ANNA.radius_m, abs=0.004)
+    assert person.sample.count.contacts == 0
+
+
+def test_after_a_fixture_the_hand_is_on_its_motion_again(person: SteppedPerson) -> None:
     person.reach(IN_TABLE)
     person.run(1.0)
-    assert person.snapshot().frames()[0][person.simulation.summary.frames.index("anna/hand")][2] < 0.0
+    person.reach(OVER_TABLE)
+    person.run(3.0)
+    assert (person.sample.hand.xyz == np.array(OVER_TABLE)).all()
+
+
+def test_an_arm_that_moves_into_a_person_pushes_her_away_with_a_bounded_force(cell: CellModel) -> None:
+    """The arm turns its first joint by 0.8 rad through the place of her hand, at up to 0.7 m/s."""
+    person = SteppedPerson(cell)
+    simulation = person.simulation
+    beside = np.array((-0.24, -0.2, 0.6))
+    person.reach((-0.24, -0.2, 0.6))
+    person.run(1.5)
     assert person.sample.count.contacts == 0
+    start = person.snapshot().arm("left").desired_rad
+    goal = start.copy()
+    goal[0] -= 0.8
+    simulation.apply(FollowTrajectory(arm="left", motion=1, trajectory=_straight(start, goal), tolerance=Tolerance()))
+    displaced_m: list[float] = []
+    for _ in range(300):
+        person.run(0.01)
+        displaced_m.append(float(np.linalg.norm(person.sample.hand.xyz - beside)))
+    assert max(displaced_m) > 0.07
+    assert 20.0 < person.sample.count.greatest_force_n < 2.0 * GREATEST_PUSH_N
+    assert np.abs(person.snapshot().arm("left").position_rad - goal).max() < 0.05
+
+
+def _straight(start: Array, goal: Array) -> JointTrajectory:
+    """Return a motion of 1.6 s with minimum jerk."""
+    s = np.linspace(0.0, 1.0, 161)[:, None]
+    rate = 30.0 * s**2 * (1.0 - s) ** 2 / 1.6
+    return JointTrajectory(
+        dt_s=0.01,
+        position_rad=start + (goal - start) * (10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5),
+        velocity_rad_s=(goal - start) * rate,
+    )
 
 
 def test_people_go_through_one_another() -> None:
@@ -87,9 +137,9 @@ def test_a_part_is_pushed_along_as_fast_as_the_hand_moves(person: SteppedPerson)
     person.run(1.0)
     person.reach((0.0, -0.13, 0.02), speed_m_s=0.4)
     person.run(person.sample.arrives_in_s + 0.5)
-    # The hand's ball has a radius of 5 cm and stops 13 cm before the middle; the part is 3 cm wide.
+    # The ball of the hand has a radius of 5 cm, stops 13 cm before the middle, and is kept up by the table.
     y_m = person.snapshot().frames()[0][row][1]
-    assert -0.075 < y_m < 0.1
+    assert -0.09 < y_m < 0.1
     count = person.sample.count
     assert count.pairs == (("anna/hand", "part"),)
     assert count.contacts >= 1
