@@ -48,7 +48,7 @@ import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
-import { BlockedPaths } from '../features/robots/BlockedPaths'
+import { BlockedPathsLine } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useBehavior } from './useBehavior'
@@ -290,7 +290,14 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
         <RunBar run={run} commands={commands} hasKeys />
       </ViewBoundary>
       <ViewBoundary name="Status">
-        <StatusRow run={run} root={behavior.graph} commands={commands} onShow={show} onFailure={showFailure} notices={<BlockedPaths />} />
+        <StatusRow
+          run={run}
+          root={behavior.graph}
+          commands={commands}
+          onShow={show}
+          onFailure={showFailure}
+          notices={<BlockedPathsLine />}
+        />
       </ViewBoundary>
       <ViewBoundary name="Timeline">
         <PastLine run={run} hasCellView={hasView} />

@@ -5,6 +5,7 @@ import { useState } from 'react'
 import { Dialog } from '../../components/Dialog'
 import { WhileLoading, lazyView } from '../../components/lazyView'
 import { Notice } from '../../components/Notice'
+import { Words } from '../../components/Words'
 
 const Adaptation = lazyView(async () => (await import('./Adaptation')).Adaptation)
 
@@ -26,7 +27,7 @@ export function AdaptHere({ behavior, obstacle, mayEdit, onMade }: AdaptHereProp
   return (
     <>
       <Notice icon={<IconInfoCircle size={16} aria-hidden />} tools={tools}>
-        It cannot be started here: {obstacle}
+        It cannot be started here: <Words text={obstacle} />
       </Notice>
       <Dialog isOpen={isOpen} isWide title="Adapt to this cell" onClose={() => setOpen(false)}>
         <WhileLoading value={<div role="status" aria-label="Loading" />}>

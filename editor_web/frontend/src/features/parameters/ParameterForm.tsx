@@ -6,6 +6,7 @@ import { useState, type ReactNode } from 'react'
 import type { BehaviorView } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { ParameterField } from '../../components/ParameterField'
+import { Words } from '../../components/Words'
 import { StartOptions } from './StartOptions'
 import { useOffers } from './useOffers'
 import { useStart } from './useStart'
@@ -45,7 +46,7 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
       <Stack gap={14} maw="34rem">
         {behavior.fit.obstacle && (
           <Alert color="yellow" icon={<IconAlertTriangle size={16} aria-hidden />} title="It cannot be started here">
-            {behavior.fit.obstacle}
+            <Words text={behavior.fit.obstacle} />
           </Alert>
         )}
         {fields.length === 0 && (

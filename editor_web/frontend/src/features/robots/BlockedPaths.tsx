@@ -1,9 +1,10 @@
 /** Which arms wait because their path is blocked: by what, and for how long. */
+import { Text } from '@mantine/core'
 import { IconBarrierBlock } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
 import { Notice } from '../../components/Notice'
-import { blockedPaths, sinceWords } from '../../document/plannedPaths'
+import { blockedPaths, sinceWords, type BlockedPath } from '../../document/plannedPaths'
 
 export function BlockedPaths() {
   const robots = useLive((s) => s.robots)
@@ -15,13 +16,42 @@ export function BlockedPaths() {
           {blocked.map(({ robot, path }) => (
             <li key={robot}>
               <Notice icon={<IconBarrierBlock size={18} aria-hidden />}>
-                <strong>{robot}</strong> waits: {path.reason || 'its path is blocked'}, since <Since sinceS={path.since_s} />
+                <Blocked robot={robot} path={path} />
               </Notice>
             </li>
           ))}
         </ul>
       )}
     </div>
+  )
+}
+
+/** The same in one line, which is cut where there is no room and whole in its title. */
+export function BlockedPathsLine() {
+  const robots = useLive((s) => s.robots)
+  const blocked = blockedPaths(robots)
+  const title = blocked.map(({ robot, path }) => `${robot} waits: ${path.reason}`).join('\n')
+  return (
+    <div aria-live="polite">
+      {blocked.length > 0 && (
+        <Text component="ul" inherit truncate m={0} p={0} title={title} c="var(--failed)" aria-label="Arms with a blocked path">
+          {blocked.map(({ robot, path }, at) => (
+            <li key={robot} style={{ display: 'inline' }}>
+              {at > 0 && ' · '}
+              <IconBarrierBlock size={15} aria-hidden style={{ verticalAlign: '-2px' }} /> <Blocked robot={robot} path={path} />
+            </li>
+          ))}
+        </Text>
+      )}
+    </div>
+  )
+}
+
+function Blocked({ robot, path }: BlockedPath) {
+  return (
+    <>
+      <strong>{robot}</strong> waits: {path.reason || 'its path is blocked'}, since <Since sinceS={path.since_s} />
+    </>
   )
 }
 
