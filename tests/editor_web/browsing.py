@@ -43,6 +43,10 @@ def browser_program() -> str:
     return found
 
 
+# What the 3D view says of its light when it is left, or changes its theme, before that has come.
+LEFT_WHILE_LOADING = "Failed to load HDR JPEG: TypeError: Failed to fetch"
+
+
 @contextmanager
 def opened_page(
     browser: Browser,
@@ -62,7 +66,7 @@ def opened_page(
     said: list[str] = []
 
     def listen(message: ConsoleMessage) -> None:
-        if message.type == "error":
+        if message.type == "error" and not message.text.startswith(LEFT_WHILE_LOADING):
             said.append(message.text)
 
     page.on("console", listen)
