@@ -40,7 +40,7 @@ from robots.workspace.workspace import Workspace
 _log = logging.getLogger("flexcell.separation")
 
 # Smaller changes of distance and permitted share are not published.
-_NEWS_M, _NEWS_SHARE = 0.02, 0.05
+_CHANGE_M, _CHANGE_SHARE = 0.02, 0.05
 
 
 class SeparationSensor(Protocol):
@@ -279,4 +279,4 @@ def _differs(before: SeparationState, now: SeparationState) -> bool:
     if known != (now.monitoring, now.nearest, now.reason, now.distance_m is None, now.permitted_share == 0.0):
         return True
     moved_m = abs((now.distance_m or 0.0) - (before.distance_m or 0.0))
-    return moved_m > _NEWS_M or abs(now.permitted_share - before.permitted_share) > _NEWS_SHARE
+    return moved_m > _CHANGE_M or abs(now.permitted_share - before.permitted_share) > _CHANGE_SHARE

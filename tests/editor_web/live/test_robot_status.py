@@ -105,11 +105,11 @@ async def test_the_line_of_an_arm_says_how_monitoring_slows_it_down(tmp_path: Pa
         client = hub.join()
         client.frame()
 
-        def told(**state: object) -> str:
+        def words(**state: object) -> str:
             topic.publish(msgspec.structs.replace(SeparationState(time_s=0.0, monitoring=True), **state))
             return delta(client).robots["left"].separation
 
-        assert told(distance_m=0.72, permitted_share=0.4) == "slowed down: somebody at 0.7 m"
-        assert told(distance_m=0.4, permitted_share=0.0) == "stopped: somebody at 0.4 m"
-        assert told(permitted_share=0.0, reason="camera top is dark: light") == "stopped: camera top is dark: light"
-        assert told(distance_m=2.0) == ""
+        assert words(distance_m=0.72, permitted_share=0.4) == "slowed down: somebody at 0.7 m"
+        assert words(distance_m=0.4, permitted_share=0.0) == "stopped: somebody at 0.4 m"
+        assert words(permitted_share=0.0, reason="camera top is dark: light") == "stopped: camera top is dark: light"
+        assert words(distance_m=2.0) == ""
