@@ -9,13 +9,14 @@ from itertools import pairwise
 
 import msgspec
 
+from engine.messages.separation import SeparationState
 from engine.project import Session
 from engine.skill import activity_words
 from engine.skills.arm_control import ArmStatus, SpeedOverride
 from engine.skills.planning import PathPreview
 
 # In this order: the status of an arm comes before its planned path.
-_KINDS = (ArmStatus.__name__, SpeedOverride.__name__, PathPreview.__name__)
+_KINDS = (ArmStatus.__name__, SpeedOverride.__name__, PathPreview.__name__, SeparationState.__name__)
 
 
 class PathLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -33,7 +34,8 @@ class PathLive(msgspec.Struct, frozen=True, kw_only=True):
 class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
     """One arm: its mode, its activity in words, the error of a reflex stop, and its speed override.
 
-    `path` is its planned path, which the 3D view shows.
+    `path` is its planned path, which the 3D view shows. `separation` says how separation monitoring slows it down,
+    empty if it does not.
     """
 
     name: str
@@ -43,6 +45,7 @@ class RobotLive(msgspec.Struct, frozen=True, kw_only=True):
     speed_override: float
     controller: str
     path: PathLive | None = None
+    separation: str = ""
 
 
 class RobotStatusCache:
@@ -90,9 +93,12 @@ class RobotStatusCache:
                     speed_override=message.settings.speed_override,
                     controller=message.settings.controller,
                     path=known.path if known is not None else None,
+                    separation=known.separation if known is not None else "",
                 )
             case SpeedOverride() if known is not None:
                 line = msgspec.structs.replace(known, speed_override=message.share)
+            case SeparationState() if known is not None:
+                line = msgspec.structs.replace(known, separation=_separation_words(message))
             case PathPreview() if known is not None:
                 line = msgspec.structs.replace(known, path=self._path(known.path, message))
             case _:
@@ -111,3 +117,13 @@ class RobotStatusCache:
             length_m=sum(math.dist(start, end) for start, end in pairwise(preview.tool_path)),
             since_s=known.since_s if known is not None and is_same_state else self._unix_s(),
         )
+
+
+def _separation_words(state: SeparationState) -> str:
+    """Return how monitoring slows an arm down, in steps of 0.1 m; empty if it does not."""
+    if not state.monitoring or state.permitted_share >= 1.0:
+        return ""
+    verb = "slowed down" if state.permitted_share > 0.0 else "stopped"
+    if state.reason:
+        return f"{verb}: {state.reason}"
+    return f"{verb}: somebody at {state.distance_m:.1f} m" if state.distance_m is not None else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,6 +12,7 @@ from typing import Protocol, Self
 
 from engine.bus import SkillBus, Topic
 from engine.clock import Clock
+from engine.errors import FlexcellError
 from engine.messages.sensing import CameraStatus, OccupancyGrid
 from engine.messages.separation import SeparationState
 from engine.robot import DeviceStatus
@@ -35,8 +37,10 @@ from robots.workspace.separation_rule import SUPERVISION_S
 from robots.workspace.unknown_space import describe_unhealthy
 from robots.workspace.workspace import Workspace
 
+_log = logging.getLogger("flexcell.separation")
+
 # Smaller changes of distance and permitted share are not published.
-_NEWS_M, _NEWS_SHARE = 0.02, 0.05
+_CHANGE_M, _CHANGE_SHARE = 0.02, 0.05
 
 
 class SeparationSensor(Protocol):
@@ -155,10 +159,18 @@ class SeparationSupervisor:
         return self._steps % self._every == 0 and self._measure()
 
     async def _supervise(self) -> None:
+        for arm in self._placements:
+            # The first time, the covering spheres of an arm take seconds.
+            self._arms[arm.name] = await asyncio.to_thread(_MonitoredArm, arm)
         while True:
             await self._clock.sleep(SUPERVISION_S)
-            if not self._world.lost_reason:
+            if self._world.lost_reason:
+                continue
+            try:
                 self._measure()
+            except FlexcellError as error:
+                # Nothing is sent, so that the arms come to rest.
+                _log.warning("distances cannot be measured: %s", error)
 
     def _measure(self) -> bool:
         """Measure all moving arms; return whether subscribers were notified."""
@@ -232,11 +244,14 @@ class _MonitoredArm:
         self, look: MeasuredPoses, grid: OccupancyGrid, bodies: UnknownBodies, held: tuple[AttachedPart, ...]
     ) -> NearestBody:
         """Return the nearest body; the distance is that of the surface of a voxel."""
+        points = bodies.points(grid)
+        if not len(points):
+            return NearestBody()
         now = look.arms[self._name]
         posture = ArmConfiguration(joints=now.joints_rad, tool_joints=dict(now.tool_joints))
         balls = {link: one for link, one in self._body.link_balls(posture).items() if link in self._moving}
         held_at = [(part, look.link(self._name, part.link or self._body.tool_link)) for part in held]
-        nearest = nearest_body(self._name, balls, held_at, bodies.points(grid))
+        nearest = nearest_body(self._name, balls, held_at, points)
         return replace(nearest, distance_m=max(0.0, nearest.distance_m - voxel_reach_m(grid)))
 
     def extents_m(self, held: tuple[AttachedPart, ...]) -> tuple[float, ...]:
@@ -264,4 +279,4 @@ def _differs(before: SeparationState, now: SeparationState) -> bool:
     if known != (now.monitoring, now.nearest, now.reason, now.distance_m is None, now.permitted_share == 0.0):
         return True
     moved_m = abs((now.distance_m or 0.0) - (before.distance_m or 0.0))
-    return moved_m > _NEWS_M or abs(now.permitted_share - before.permitted_share) > _NEWS_SHARE
+    return moved_m > _CHANGE_M or abs(now.permitted_share - before.permitted_share) > _CHANGE_SHARE

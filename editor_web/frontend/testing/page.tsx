@@ -161,7 +161,7 @@ export function node(told: Partial<NodeLive> = {}): NodeLive {
 }
 
 export function robot(told: Partial<RobotLive> = {}): RobotLive {
-  return { name: 'left', mode: 'idle', activity: '', error: '', speed_override: 1, controller: '', path: null, ...told }
+  return { name: 'left', mode: 'idle', activity: '', error: '', speed_override: 1, controller: '', path: null, separation: '', ...told }
 }
 
 /** What a node waits for at its end: the answer to its outcome. */

@@ -7,9 +7,9 @@ import numpy as np
 from engine.skills.people import Reach
 from robots.port import Array
 from robots.sim.people.contact_counter import ContactCounter
+from robots.sim.people.limb_yielding import YIELDING_FIELDS, Yielding
 from robots.sim.people.person_motion import MOTION_FIELDS, PersonMotion
 from robots.sim.people.person_report import report_size
-from robots.sim.people.yielding import YIELDING_FIELDS, Yielding
 from robots.sim.physics.cell_model import CellModel
 from robots.sim.physics.limb import LimbPose
 from robots.sim.physics.physics import Physics

@@ -6,6 +6,8 @@ from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import msgspec
+
 from editor_web.live.hub import LiveClient, LiveHub
 from editor_web.live.live_frames import LiveDelta, LiveSnapshot
 from editor_web.live.robot_status import RobotStatusCache
@@ -13,6 +15,7 @@ from engine.bus import SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.journal import Journal
 from engine.messages import JointState
+from engine.messages.separation import SeparationState
 from engine.project.session import Session
 from engine.skills.arm_control import SetSpeedOverride
 from engine.skills.planning import PathPreview
@@ -93,3 +96,20 @@ async def test_what_says_the_same_again_wakes_nobody(tmp_path: Path) -> None:
         hub.robots.close()
         arm.become("guiding")
         assert not client.dirty.is_set()
+
+
+async def test_the_line_of_an_arm_says_how_monitoring_slows_it_down(tmp_path: Path) -> None:
+    async with hub_of_two_arms(tmp_path) as (bus, hub, _):
+        topic = bus.topic("left/separation", SeparationState)
+        await hub.robots.open()
+        client = hub.join()
+        client.frame()
+
+        def words(**state: object) -> str:
+            topic.publish(msgspec.structs.replace(SeparationState(time_s=0.0, monitoring=True), **state))
+            return delta(client).robots["left"].separation
+
+        assert words(distance_m=0.72, permitted_share=0.4) == "slowed down: somebody at 0.7 m"
+        assert words(distance_m=0.4, permitted_share=0.0) == "stopped: somebody at 0.4 m"
+        assert words(permitted_share=0.0, reason="camera top is dark: light") == "stopped: camera top is dark: light"
+        assert words(distance_m=2.0) == ""

@@ -2118,7 +2118,7 @@ export interface ResumeQuestionsBody {
   readonly questions: readonly ResumeQuestion[]
 }
 
-/** One arm: its mode, its activity in words, the error of a reflex stop, and its speed override. `path` is its planned path, which the 3D view shows. */
+/** One arm: its mode, its activity in words, the error of a reflex stop, and its speed override. `path` is its planned path, which the 3D view shows. `separation` says how separation monitoring slows it down, empty if it does not. */
 export interface RobotLive {
   readonly name: string
   readonly mode: string
@@ -2127,6 +2127,7 @@ export interface RobotLive {
   readonly speed_override: number
   readonly controller: string
   readonly path: PathLive | null
+  readonly separation: string
 }
 
 /** Two runs beside one another. `visits` are aligned, each container before what is inside; `divergence` is where the runs first differ, null where they do not. `settings` are parameters, inputs, seed and clock that differ. `left_out` and `data_left_out` count what is not listed. `icons` has the name of the icon of each visited node, as far as its graph is known. */

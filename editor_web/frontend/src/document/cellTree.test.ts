@@ -3,7 +3,16 @@ import { expect, it } from 'vitest'
 import type { CellItem, CellStateFrame, RobotLive } from '../api/types'
 import { ancestorsOf, cellTree, nodeAt, orientationText, placeOf, poseOf, positionText, stateWords, type CellNode } from './cellTree'
 
-const ROBOT: RobotLive = { name: 'left', mode: 'moving', activity: 'move_pose', error: '', speed_override: 1, controller: '', path: null }
+const ROBOT: RobotLive = {
+  name: 'left',
+  mode: 'moving',
+  activity: 'move_pose',
+  error: '',
+  speed_override: 1,
+  controller: '',
+  path: null,
+  separation: '',
+}
 const STATE: CellStateFrame = {
   k: 'cell',
   poses: {

@@ -24,6 +24,7 @@ const robot = (name: string, of: PathLive | null): RobotLive => ({
   speed_override: 1,
   controller: '',
   path: of,
+  separation: '',
 })
 
 describe('the paths that a question is about', () => {

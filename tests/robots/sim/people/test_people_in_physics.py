@@ -12,7 +12,7 @@ from robots.port import Array, JointTrajectory, Tolerance
 from robots.scene.sim_scene import PersonBody
 from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.commands.world_commands import RestoreWorld
-from robots.sim.people.yielding import GREATEST_PUSH_N
+from robots.sim.people.limb_yielding import GREATEST_PUSH_N
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, REST, SteppedPerson, with_anna
 from tests.robots.sim.sim_cell import box, one_arm

@@ -24,6 +24,8 @@ it('tells what an arm does', () => {
   expect(state).toHaveTextContent('idle')
   socket.tell(told({ mode: 'moving', activity: 'move_joints' }))
   expect(state).toHaveTextContent('carries outmove_joints')
+  socket.tell(told({ mode: 'moving', activity: 'move_joints', separation: 'slowed down: somebody at 0.7 m' }))
+  expect(state).toHaveTextContent('slowed down: somebody at 0.7 m')
   socket.tell(told({ mode: 'guiding' }))
   expect(state).toHaveTextContent('led by hand')
 })

@@ -32,7 +32,7 @@ function Robot({ robot }: { robot: RobotLive }) {
   const isConnected = useLive((s) => s.connection === 'live')
   const role = useLive((s) => s.role)
   const [problem, setProblem] = useState('')
-  const { name, mode, activity, error, speed_override: share } = robot
+  const { name, mode, activity, error, separation, speed_override: share } = robot
   const look = robotLook(mode)
   const obstacle = !isConnected ? 'the server does not answer' : role === 'operator' ? undefined : 'you may look only'
 
@@ -74,6 +74,11 @@ function Robot({ robot }: { robot: RobotLive }) {
         {activity && (
           <Text span inherit c="var(--label)">
             {activity}
+          </Text>
+        )}
+        {separation && (
+          <Text span inherit c="var(--label)">
+            {separation}
           </Text>
         )}
       </Group>
