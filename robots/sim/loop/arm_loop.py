@@ -50,6 +50,7 @@ class SimArmLoop:
         physics: Physics,
         contacts: ContactReader,
         hardware: ArmHardware,
+        has_friction: bool,
     ) -> None:
         model = indices.model
         self.indices = indices
@@ -65,6 +66,7 @@ class SimArmLoop:
             kinematics=ArmKinematics(model, base=base),
             gravity_m_s2=physics.gravity_m_s2,
             touching=lambda: contacts.describe(indices),
+            has_friction=has_friction,
         )
         self.control.initialize(physics.positions[indices.qpos])
 

@@ -71,6 +71,7 @@ class Simulation:
                     seed=cell.scene.seed,
                     step_s=self.step_s,
                 ),
+                has_friction=realism(cell.scene.realism).coulomb_share > 0.0,
             )
             for arm in cell.arms
         }
