@@ -127,7 +127,9 @@ class SimArmLoop:
         physics, control = self._physics, self.control
         self._tool_xyz = physics.point_of(self._tool_link, control.tool_xyz_m)
         position, velocity = self.measured_joints(step)
-        wrench = self._hardware.wrench(physics.wrench_on(self._beyond_flange, self._tool_xyz), step=step)
+        wrench = self._hardware.wrench(
+            physics.wrench_on(self._beyond_flange, self._tool_xyz), axes=physics.axes_of(self._tool_link), step=step
+        )
         control.measure(position, velocity, wrench=wrench, step_s=step_s)
         return control.advance(step_s)
 

@@ -96,6 +96,10 @@ class Physics:
         """Return a point given in a body's frame in the world at the start of the last step, both (3,)."""
         return self._xpos[body] + self._rotations[body] @ offset
 
+    def axes_of(self, body: int) -> Array:
+        """Return the axes of a body in the world as columns, (3, 3)."""
+        return self._rotations[body]
+
     def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
         """Return force and torque about `point` (6,), world axes, exerted by contacts and pushes on bodies.
 
