@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.document import RealismName
 from engine.messages import Pose
 from engine.skills.arm_control import ControlSettings
 from engine.skills.dmp import Compliance
@@ -89,6 +90,7 @@ class Wiping:
         step_s: float = 0.001,
         settings: ControlSettings | None = None,
         first_touch: float | None = None,
+        realism: RealismName = "typical",
     ) -> None:
         placement = ArmPlacement(
             name="arm", model=subject.model, base=Pose(xyz=(0.0, 0.0, 0.0)), gripper=subject.gripper
@@ -98,7 +100,8 @@ class Wiping:
         model = placement.robot()
         self._kinematics = ArmKinematics(model, base=RigidTransform.from_pose(placement.base))
         start = self._kinematics.tool_pose(np.array(subject.start_rad))
-        scene = SimScene(step_s=step_s, arms=(placement,), fixtures=(self._surface(start, slope),))
+        surface = self._surface(start, slope)
+        scene = SimScene(step_s=step_s, arms=(placement,), fixtures=(surface,), realism=realism)
         cell = build_cell(scene)
         if first_touch is not None:
             cell.model.geom("surface").solimp[0] = first_touch

@@ -79,12 +79,12 @@ def test_an_arm_rests_beside_its_goal_by_friction_and_weight_over_stiffness(
     # Coulomb friction of the unluckiest joint, and its share of wrong masses: a tenth of the weight of the arm at most.
     preset = realism(name)
     friction_nm = preset.coulomb_share * (1.0 + preset.friction_spread) * EFFORT_NM
-    weight_nm = 0.1 * np.abs(SteppedArm(build_cell(one_arm())).sample.effort_nm)
+    weight_nm = 0.1 * np.abs(SteppedArm(build_cell(realistic(one_arm(), "ideal"))).sample.effort_nm)
     assert (found.off_rad < (friction_nm + weight_nm + 0.05) / STIFFNESS_NM_RAD).all()
 
 
 def test_an_ideal_arm_is_where_it_shall_be() -> None:
-    found = moved(SteppedArm(build_cell(one_arm())))
+    found = moved(SteppedArm(build_cell(realistic(one_arm(), "ideal"))))
     assert found.off_rad.max() < 2e-5
     assert found.felt_nm.max() < 0.01
 
