@@ -54,8 +54,8 @@ def swing_joints(
     )
 
 
-def _room_rad(joint: int, start: Array, wanted_rad: float, limits: JointLimits, joints: tuple[str, ...]) -> float:
-    """Return the amplitude that a joint has room for, at most the wanted one."""
+def _room_rad(joint: int, start: Array, amplitude_rad: float, limits: JointLimits, joints: tuple[str, ...]) -> float:
+    """Return the amplitude that a joint has room for, at most `amplitude_rad`."""
     below, above = start[joint] - limits.lower_rad[joint], limits.upper_rad[joint] - start[joint]
     room = float(min(below, above)) - _MARGIN_RAD
     if room < _LEAST_RAD:
@@ -64,7 +64,7 @@ def _room_rad(joint: int, start: Array, wanted_rad: float, limits: JointLimits, 
             f" {_LEAST_RAD:g} rad are needed",
             hint="move the arm to a configuration away from the limits of its joints",
         )
-    return min(wanted_rad, room)
+    return min(amplitude_rad, room)
 
 
 def _swing(

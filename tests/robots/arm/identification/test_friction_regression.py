@@ -17,7 +17,7 @@ ACCELERATION = np.gradient(VELOCITY, T)
 
 @settings(deadline=None, max_examples=40)
 @given(st.floats(0.05, 5.0), st.floats(0.05, 3.0), st.floats(-5.0, 5.0), st.floats(-5.0, 5.0), st.floats(-0.3, 0.3))
-def test_friction_is_told_from_a_wrong_weight_and_a_wrong_inertia(
+def test_friction_is_separated_from_errors_of_weight_and_inertia(
     coulomb_nm: float, viscous_nms_rad: float, weight_nm: float, slope_nm_rad: float, inertia_kg_m2: float
 ) -> None:
     excess = coulomb_nm * np.sign(VELOCITY) + viscous_nms_rad * VELOCITY
