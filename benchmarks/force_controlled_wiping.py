@@ -90,7 +90,7 @@ class Wiping:
         step_s: float = 0.001,
         settings: ControlSettings | None = None,
         first_touch: float | None = None,
-        realism: RealismName = "ideal",
+        realism: RealismName = "typical",
     ) -> None:
         placement = ArmPlacement(
             name="arm", model=subject.model, base=Pose(xyz=(0.0, 0.0, 0.0)), gripper=subject.gripper
@@ -100,9 +100,8 @@ class Wiping:
         model = placement.robot()
         self._kinematics = ArmKinematics(model, base=RigidTransform.from_pose(placement.base))
         start = self._kinematics.tool_pose(np.array(subject.start_rad))
-        scene = SimScene(
-            step_s=step_s, arms=(placement,), fixtures=(self._surface(start, slope),), realism=realism, seed=1
-        )
+        surface = self._surface(start, slope)
+        scene = SimScene(step_s=step_s, arms=(placement,), fixtures=(surface,), realism=realism)
         cell = build_cell(scene)
         if first_touch is not None:
             cell.model.geom("surface").solimp[0] = first_touch

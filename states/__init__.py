@@ -34,6 +34,8 @@ from states.motion.follow_joint_dmp import FollowJointDmp
 from states.motion.follow_recording import FollowRecording
 from states.motion.follow_waypoints import FollowWaypoints
 from states.motion.guide import Guide
+from states.motion.identify_friction import IdentifyFriction
+from states.motion.identify_payload import IdentifyPayload
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
 from states.motion.move_free import MoveFree
 from states.motion.move_joints import MoveJoints
@@ -82,6 +84,8 @@ _STATES: tuple[type[State], ...] = (
     HandCheckHeld,
     HandClose,
     HandOpen,
+    IdentifyFriction,
+    IdentifyPayload,
     LearnCartDmp,
     LearnJointDmp,
     Log,

@@ -66,7 +66,7 @@ class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag=
     gravity: bool = True
     realism: Annotated[
         RealismName, Meta(description="Friction, noise, delay, and errors of masses and calibration of the arms")
-    ] = "ideal"
+    ] = "typical"
     engine_silence_s: Annotated[
         float, Meta(ge=0.1, le=60.0, description="Seconds without an engine message after which all motion stops")
     ] = 0.2

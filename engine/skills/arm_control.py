@@ -31,7 +31,8 @@ class ControlSettings(Message, frozen=True, kw_only=True):
     An empty `joint_stiffness_nm_rad` means the nominal stiffness; an empty `collision_torque_nm` and no
     `collision_force_n` disable the reflex. The tool centre point and the centre of mass of the load are
     given in the model's tool link. `nullspace_stiffness_nm_rad` pulls a redundant arm towards the joints of its
-    set point without moving the tool. `speed_override` is the share of their own speed at which all motions run.
+    set point without moving the tool; None is half of the nominal stiffness of each joint. `speed_override`
+    is the share of their own speed at which all motions run.
     """
 
     controller: ControllerName = "joint_impedance"
@@ -39,7 +40,7 @@ class ControlSettings(Message, frozen=True, kw_only=True):
     joint_damping_ratio: float = 1.0
     cartesian_stiffness: Vector6 = (3000.0, 3000.0, 3000.0, 200.0, 200.0, 200.0)
     cartesian_damping_ratio: float = 1.0
-    nullspace_stiffness_nm_rad: float = 20.0
+    nullspace_stiffness_nm_rad: float | None = None
     tool_xyz_m: Vector3 = (0.0, 0.0, 0.0)
     tool_xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
     load_kg: float = 0.0
@@ -99,7 +100,7 @@ class SetCartesianImpedance(Service[ControlSettings], frozen=True, kw_only=True)
 
     stiffness: Vector6
     damping_ratio: Damping = 1.0
-    nullspace_stiffness_nm_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 20.0
+    nullspace_stiffness_nm_rad: Annotated[float, msgspec.Meta(ge=0.0)] | None = None
 
 
 class SetEndEffectorFrame(Service[ControlSettings], frozen=True, kw_only=True):

@@ -19,6 +19,7 @@ from robots.arm.execution.tool_frames import WORLD
 from robots.arm.force_motions import ForceMotions
 from robots.arm.free_motion.free_motions import FreeMotions
 from robots.arm.guiding_motions import GuidingMotions
+from robots.arm.identification.identification_motions import IdentificationMotions
 from robots.arm.jogging.jog_motions import JogMotions
 from robots.arm.path_motions import PathMotions
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
@@ -93,6 +94,7 @@ class ArmServer:
             ContactMotions(runner),
             JogMotions(runner, workspace, tool=gripper.name if gripper is not None else ""),
             GuidingMotions(runner),
+            IdentificationMotions(runner),
             DirectControl(runner),
             ArmControlServices(runner, report),
             report,

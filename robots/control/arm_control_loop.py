@@ -13,6 +13,7 @@ from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.carried_load import CarriedLoad
 from robots.control.collision_reflex import CollisionReflex
+from robots.control.friction_compensation import FrictionCompensation
 from robots.control.generators.motion_generator import MotionGenerator
 from robots.control.laws.cartesian_impedance import CartesianImpedance
 from robots.control.laws.controller import Controller
@@ -40,13 +41,15 @@ class ArmControlLoop:
     """Owned by one control loop, which calls `measure`, `advance` and `torque` once per period, in this order.
 
     Without thresholds in its settings the arm has no collision reflex. What it knows of the arm is the nominal model
-    of the model folders and the load of its settings: feed-forward and external torques are computed from these.
+    of the model folders, friction included, and the load of its settings: feed-forward and external torques are
+    computed from these.
 
     Args:
         name: Name of the arm, for messages.
         kinematics: Kinematics of the arm, used by this loop only.
         gravity_m_s2: Gravity in the world, (3,).
         touching: Describes what the arm touches; empty for nothing.
+        has_friction: False for a simulated arm without friction, which its controller then does not compensate.
         on_jump: What follows a set point beyond the limits. `report`, in simulation, sends it and reports it; `stop`,
             for real arms, never sends it: the arm brakes from the last one, and its motion fails with the cause.
         separation: The rule of speed and separation monitoring, None without it.
@@ -59,6 +62,7 @@ class ArmControlLoop:
         kinematics: ArmKinematics,
         gravity_m_s2: Array,
         touching: Callable[[], str],
+        has_friction: bool = True,
         on_jump: Literal["report", "stop"] = "report",
         separation: SeparationRule | None = None,
     ) -> None:
@@ -78,6 +82,7 @@ class ArmControlLoop:
         self._inertia = np.diag(dynamics.mass_matrix(np.array(model.home_rad))).copy()
         self._add_feedforward = kernels.add_feedforward
         self._feedforward_nm = np.zeros(model.dof)
+        self._friction = FrictionCompensation(model.friction) if has_friction else None
         self._observer = MomentumObserver(model.dof)
         self._limit_nm = np.array(limits.effort_nm)
         self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
@@ -94,6 +99,8 @@ class ArmControlLoop:
             "joint_impedance": JointImpedance(limits),
             "cartesian_impedance": cartesian,
         }
+        # The others yield: a guided arm has no set point of its own, and one after a reflex shall not press.
+        self._integrating = frozenset(self._holding.values())
         self._floating = GravityCompensation(limits)
         self._yielding = JointImpedance(limits)
         self._law: Controller = self._holding[self.settings.controller]
@@ -128,6 +135,8 @@ class ArmControlLoop:
         self.state.external_nm[:] = 0.0
         self.state.wrench[:] = 0.0
         self._load.forget_motion()
+        if self._friction is not None:
+            self._friction.forget()
         self._untold.clear()
         if self.separation is not None:
             self.separation.forget()
@@ -217,16 +226,29 @@ class ArmControlLoop:
             self._law.terminate()
             self._law = law
             self._blend.start(duration_s=_REFLEX_BLEND_S if law is self._yielding else _BLEND_S)
+            if self._friction is not None:
+                self._friction.forget()
         state, motion, dynamics = self.state, self.motion, self._dynamics
         mass = dynamics.mass_matrix(state.position)
         bias_nm = dynamics.bias(state.position, state.velocity)
         feedforward_nm = self._feedforward_nm
         damping, acceleration = dynamics.damping_nms_rad, motion.acceleration
         self._add_feedforward(mass, bias_nm, state.velocity, acceleration, damping, feedforward_nm)
+        friction = self._friction
+        if friction is not None:
+            if motion.leads:
+                feedforward_nm += friction.along(motion.velocity)
+            else:
+                feedforward_nm += friction.helping(state.velocity, pushed_nm=state.wrench @ state.jacobian)
+            bias_nm = bias_nm + friction.along(state.velocity)
         bearing_nm = feedforward_nm
         if not self._load.none:
             bearing_nm = feedforward_nm + self._load.bearing_nm(acceleration)
         torque = law.step(state, motion, feedforward_nm=bearing_nm)
+        if friction is not None and law in self._integrating:
+            spring_nm = torque - bearing_nm
+            torque = torque + friction.integrate(spring_nm, velocity=motion.velocity, step_s=step_s)
+            torque = np.minimum(np.maximum(torque, -self._limit_nm), self._limit_nm)
         torque = self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
         self._observer.command(torque, velocity=state.velocity, mass_matrix=mass, bias_nm=bias_nm)
         return torque

@@ -204,7 +204,7 @@ def solve_in_place(matrix: Array, right: Array) -> bool:
     return True
 
 
-@compiled(f"b1({_ANY}, {_TABLE}, {_ANY}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, f8, f8, f8, {_ROW})")
+@compiled(f"b1({_ANY}, {_TABLE}, {_ANY}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, f8, {_ROW})")
 def impedance_torque(
     world_jacobian: Array,
     base_rotation: Array,
@@ -214,15 +214,16 @@ def impedance_torque(
     joint_error_rate: Array,
     stiffness: Array,
     damping_root: Array,
-    joint_stiffness: float,
-    joint_damping_root: float,
+    joint_stiffness: Array,
+    joint_damping_root: Array,
     lightest_share: float,
     torque: Array,
 ) -> bool:
     """Write the joint torques (n,) of springs and dampers at the tool and, in its null space, at the joints.
 
     The Jacobian (6, n) and `error` (6,) are in world axes, `stiffness` and `damping_root`
-    (6,) in those of the base with `base_rotation` (3, 3). See `CartesianImpedance` for the law.
+    (6,) in those of the base with `base_rotation` (3, 3); those of the joints are (n,). See
+    `CartesianImpedance` for the law.
     False if `mass` (n, n) is not positive definite; `torque` is then unchanged.
     """
     n = len(torque)
@@ -260,8 +261,8 @@ def impedance_torque(
         return False
     drawn = np.empty(n)
     for joint in range(n):
-        damped = joint_damping_root * math.sqrt(mass[joint, joint]) * joint_error_rate[joint]
-        drawn[joint] = joint_stiffness * joint_error[joint] + damped
+        damped = joint_damping_root[joint] * math.sqrt(mass[joint, joint]) * joint_error_rate[joint]
+        drawn[joint] = joint_stiffness[joint] * joint_error[joint] + damped
     moved = np.empty(6)
     for row in range(6):
         rate = drift = 0.0

@@ -23,6 +23,14 @@ class JointLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class JointFriction:
+    """Nominal friction per arm joint, in the order of `RobotModel.arm_joints`; zero where it is not known."""
+
+    coulomb_nm: tuple[float, ...]
+    viscous_nms_rad: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class RobotModel:
     """One arm with the tool at its flange, composed of its folder, its tool's folder and its calibration.
 
@@ -44,6 +52,7 @@ class RobotModel:
     tool_link: str
     arm_joints: tuple[str, ...]
     limits: JointLimits
+    friction: JointFriction
     home_rad: tuple[float, ...]
     armature_kg_m2: tuple[float, ...]
     tool: ToolModel | None

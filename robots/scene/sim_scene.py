@@ -123,7 +123,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     world_silence_s: float = CONTROL_SILENCE_S
     start_limit_s: float = 180.0
     gravity: bool = True
-    realism: RealismName = "ideal"
+    realism: RealismName = "typical"
     seed: int = 0
     arms: tuple[ArmPlacement, ...] = ()
     fixtures: tuple[FixtureBody, ...] = ()

@@ -22,7 +22,10 @@ class Gear(Protocol):
         ...
 
     def press(self, force_n: float) -> None:
-        """Set the motors so that each pad presses outward with `force_n`, the fingers' weight compensated."""
+        """Set the motors so that each pad presses outward with `force_n`, as far as the fingers' weight lets it.
+
+        The drive of a real tool does not know how it is held and compensates no weight: 0.15 N of a Panda's finger.
+        """
         ...
 
     def closing_axis(self) -> Array | None:
@@ -46,7 +49,7 @@ class SlidingGear:
     def press(self, force_n: float) -> None:
         """Set both motors."""
         indices, physics = self._indices, self._physics
-        physics.motors[indices.motor] = physics.bias[indices.dof] + force_n
+        physics.motors[indices.motor] = force_n
 
     def closing_axis(self) -> Array | None:
         """Return the pads of a parallel gripper, which face along y."""
@@ -76,8 +79,7 @@ class TurningGear:
         """Set the torque that does the same work as the pad forces."""
         indices, physics = self._indices, self._physics
         _, travel_m_rad = self._at()
-        weight_nm = float(indices.factors @ physics.bias[indices.dof])
-        physics.motors[indices.motor] = weight_nm + force_n * travel_m_rad
+        physics.motors[indices.motor] = force_n * travel_m_rad
 
     def closing_axis(self) -> Array | None:
         """Return the pads on a linkage, which face each other."""

@@ -18,8 +18,15 @@ NAMES = frozenset(
     ("cell_name", "new_cell_name", "cell_label", "entry", "entry_of", "new_entry", "new_entry_of", "entry_kind")
 )
 KINDS_OF_THE_CELL = ("cell_name", "new_cell_name", "cell_label")
-NAMELESS = frozenset(("flow.Log.message", "bus.CheckMessage.condition", "bus.WaitForMessage.condition"))
-"""What is written for people, and expressions over a message."""
+NAMELESS = frozenset(
+    (
+        "flow.Log.message",
+        "bus.CheckMessage.condition",
+        "bus.WaitForMessage.condition",
+        "motion.IdentifyFriction.joints[]",
+    )
+)
+"""What is written for people, expressions over a message, and joints, which depend on the model of the robot."""
 
 
 def _texts(schema: Schema, definitions: Mapping[str, Schema], at: str, says: frozenset[str]) -> Iterator[str]:

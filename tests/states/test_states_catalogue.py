@@ -52,6 +52,8 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "motion.FollowRecording",
         "motion.FollowWaypoints",
         "motion.Guide",
+        "motion.IdentifyFriction",
+        "motion.IdentifyPayload",
         "motion.LearnCartDmp",
         "motion.LearnJointDmp",
         "motion.MoveFree",

@@ -9,6 +9,7 @@ import numpy as np
 from engine.skills.arm_control import ControlSettings
 from robots.control.arm_state import ArmState
 from robots.control.laws.controller import SetPoint
+from robots.control.laws.joint_impedance import nominal_stiffness_nm_rad
 from robots.model.robot_model import JointLimits
 from robots.port import Array
 
@@ -17,6 +18,9 @@ from robots.port import Array
 _LIGHTEST_SHARE = 0.03
 # Joint damping assumes at least this null-space stiffness, so that the joints never drift freely.
 _LEAST_STIFFNESS_NM_RAD = 2.0
+# Default of the null space, share of the nominal stiffness of each joint: friction of 5 % of the limit, that of a worn
+# arm, then holds a joint 6 mrad beside its set point.
+_NULLSPACE_SHARE = 0.5
 
 
 class CartesianImpedance:
@@ -48,15 +52,20 @@ class CartesianImpedance:
         self._torque = np.zeros_like(self._upper_nm)
         self._stiffness = np.zeros(6)
         self._damping_root = np.zeros(6)
-        self._joint_stiffness = self._joint_damping_root = 0.0
+        self._nullspace_nm_rad = _NULLSPACE_SHARE * nominal_stiffness_nm_rad(limits)
+        self._joint_stiffness = self._nullspace_nm_rad
+        self._joint_damping_root = np.zeros_like(self._upper_nm)
 
     def initialize(self, *, settings: ControlSettings, inertia_kg_m2: Array) -> None:
         """Take stiffness and damping ratio; every step recomputes the inertia."""
         ratio = settings.cartesian_damping_ratio
         self._stiffness = np.array(settings.cartesian_stiffness)
         self._damping_root = 2.0 * ratio * np.sqrt(self._stiffness)
-        self._joint_stiffness = settings.nullspace_stiffness_nm_rad
-        self._joint_damping_root = 2.0 * ratio * np.sqrt(max(self._joint_stiffness, _LEAST_STIFFNESS_NM_RAD))
+        given = settings.nullspace_stiffness_nm_rad
+        nominal = self._nullspace_nm_rad
+        self._joint_stiffness = nominal if given is None else np.full_like(nominal, given)
+        least = np.minimum(_LEAST_STIFFNESS_NM_RAD, nominal)
+        self._joint_damping_root = 2.0 * ratio * np.sqrt(np.maximum(self._joint_stiffness, least))
 
     def step(self, state: ArmState, set_point: SetPoint, *, feedforward_nm: Array) -> Array:
         """Return the joint torques, within the limits; the array is reused by the next call.

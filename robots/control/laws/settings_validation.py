@@ -58,7 +58,8 @@ def _check_controller(settings: ControlSettings, joints: tuple[str, ...], limits
         most = turn if axis.startswith("r") else push
         _within(f"cartesian_stiffness along {axis}", value, least=0.0, most=most)
     most = _MOST_JOINT_STIFFNESS * max(nominal)
-    _within("nullspace_stiffness_nm_rad", settings.nullspace_stiffness_nm_rad, least=0.0, most=most)
+    if settings.nullspace_stiffness_nm_rad is not None:
+        _within("nullspace_stiffness_nm_rad", settings.nullspace_stiffness_nm_rad, least=0.0, most=most)
 
 
 def _check_tool_and_load(settings: ControlSettings, limits: JointLimits) -> None:

@@ -14,7 +14,7 @@ from robots.model.folder.calibration import apply_calibration, load_calibration
 from robots.model.folder.folder_document import FileReference, RobotDocument, ToolDocument
 from robots.model.folder.model_folder import ModelFolder
 from robots.model.joint_map import JointMap
-from robots.model.robot_model import JointLimits, RobotModel
+from robots.model.robot_model import JointFriction, JointLimits, RobotModel
 from robots.model.tool_model import ToolModel
 from robots.model.urdf.urdf_tree import (
     Element,
@@ -89,6 +89,7 @@ def compose(
         tool_link=tool_link,
         arm_joints=tuple(joint.name for joint in document.joints),
         limits=_limits(document),
+        friction=_friction(document),
         home_rad=tuple(joint.home_rad for joint in document.joints),
         armature_kg_m2=tuple(joint.armature_kg_m2 for joint in document.joints),
         tool=tool_model,
@@ -190,6 +191,13 @@ def _limits(document: RobotDocument) -> JointLimits:
         acceleration_rad_s2=tuple(joint.acceleration_rad_s2 for joint in joints),
         jerk_rad_s3=tuple(joint.jerk_rad_s3 for joint in joints),
         effort_nm=tuple(joint.effort_nm for joint in joints),
+    )
+
+
+def _friction(document: RobotDocument) -> JointFriction:
+    return JointFriction(
+        coulomb_nm=tuple(joint.coulomb_nm for joint in document.joints),
+        viscous_nms_rad=tuple(joint.viscous_nms_rad for joint in document.joints),
     )
 
 

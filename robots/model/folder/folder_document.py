@@ -42,7 +42,10 @@ class Licence(FileReference, frozen=True, kw_only=True):
 
 
 class ArmJoint(StrictModel, frozen=True, kw_only=True):
-    """One arm joint: name in the URDF, range, limits, home, inertia of the motor seen at the joint."""
+    """One arm joint: name in the URDF, range, limits, home, inertia of the motor seen at the joint, nominal friction.
+
+    Controllers compensate the friction that is given here, none by default; the dampers of the URDF are not part of it.
+    """
 
     name: Text
     lower_rad: float
@@ -53,6 +56,8 @@ class ArmJoint(StrictModel, frozen=True, kw_only=True):
     effort_nm: Positive
     home_rad: float
     armature_kg_m2: Annotated[float, Meta(ge=0.0)] = 0.1
+    coulomb_nm: Annotated[float, Meta(ge=0.0)] = 0.0
+    viscous_nms_rad: Annotated[float, Meta(ge=0.0)] = 0.0
 
 
 class DeviceJoint(StrictModel, frozen=True, kw_only=True):

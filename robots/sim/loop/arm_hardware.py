@@ -24,8 +24,8 @@ class ArmHardware(Protocol):
         """Return the measured joint positions and velocities, (n,)."""
         ...
 
-    def wrench(self, wrench: Array, *, step: int) -> Array:
-        """Return the measured force and torque at the tool, (6,)."""
+    def wrench(self, wrench: Array, *, axes: Array, step: int) -> Array:
+        """Return the measured force and torque at the tool, (6,); `axes` (3, 3) are the sensor's in the world."""
         ...
 
     def effort(self, torque_nm: Array, *, step: int) -> Array:
@@ -48,7 +48,7 @@ class IdealHardware:
         """Return them as they are."""
         return position, velocity
 
-    def wrench(self, wrench: Array, *, step: int) -> Array:
+    def wrench(self, wrench: Array, *, axes: Array, step: int) -> Array:
         """Return it as it is."""
         return wrench
 
@@ -99,9 +99,10 @@ class ErroneousHardware:
         counts = np.rint((position + noise[self._position]) / self._quantum_rad)
         return counts * self._quantum_rad, velocity + noise[self._velocity]
 
-    def wrench(self, wrench: Array, *, step: int) -> Array:
-        """Return the measured force and torque at the tool, (6,)."""
-        return wrench + self._offset + self._noise_of(step)[self._wrench]
+    def wrench(self, wrench: Array, *, axes: Array, step: int) -> Array:
+        """Return the measured force and torque at the tool, (6,); the offset turns with the sensor."""
+        offset = (self._offset.reshape(2, 3) @ axes.T).reshape(6)
+        return wrench + offset + self._noise_of(step)[self._wrench]
 
     def effort(self, torque_nm: Array, *, step: int) -> Array:
         """Return the measured motor torques, (n,)."""

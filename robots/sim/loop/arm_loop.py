@@ -52,6 +52,7 @@ class SimArmLoop:
         contacts: ContactReader,
         hardware: ArmHardware,
         separation: SeparationRule | None = None,
+        has_friction: bool,
     ) -> None:
         model = indices.model
         self.indices = indices
@@ -68,6 +69,7 @@ class SimArmLoop:
             gravity_m_s2=physics.gravity_m_s2,
             touching=lambda: contacts.describe(indices),
             separation=separation,
+            has_friction=has_friction,
         )
         self.control.initialize(physics.positions[indices.qpos])
 
@@ -131,7 +133,9 @@ class SimArmLoop:
         physics, control = self._physics, self.control
         self._tool_xyz = physics.point_of(self._tool_link, control.tool_xyz_m)
         position, velocity = self.measured_joints(step)
-        wrench = self._hardware.wrench(physics.wrench_on(self._beyond_flange, self._tool_xyz), step=step)
+        wrench = self._hardware.wrench(
+            physics.wrench_on(self._beyond_flange, self._tool_xyz), axes=physics.axes_of(self._tool_link), step=step
+        )
         control.measure(position, velocity, wrench=wrench, step_s=step_s)
         return control.advance(step_s)
 

@@ -72,6 +72,7 @@ class Simulation:
                     step_s=self.step_s,
                 ),
                 separation=cell.scene.separation,
+                has_friction=realism(cell.scene.realism).coulomb_share > 0.0,
             )
             for arm in cell.arms
         }

@@ -25,8 +25,8 @@ _FAR_M = 100.0
 class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
 
-    Shapes: `positions` (nq,), `velocities`, `bias` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
-    `bias` is gravity and Coriolis force at the state read by `start_step`; the controllers of arms do not know it.
+    Shapes: `positions` (nq,), `velocities` (nv,), `motors` (nu,), `gravity_m_s2` (3,). Forces of the simulator are not
+    offered: controllers of arms and drives of tools know nominal models only.
 
     `geom_centres` (n, 3) and `geom_rotations` (n, 9), row by row, are the poses of the geometries at the start of the
     last step, and `geom_radii` (n,) the radii of the spheres around their centres that contain them.
@@ -46,7 +46,6 @@ class Physics:
         self.positions: Array = self._data.qpos
         self.velocities: Array = self._data.qvel
         self.motors: Array = self._data.ctrl
-        self.bias: Array = self._data.qfrc_bias
         self.gravity_m_s2: Array = model.opt.gravity.copy()
         self._xpos: Array = self._data.xpos
         self._xquat: Array = self._data.xquat
@@ -64,7 +63,7 @@ class Physics:
         mujoco.mj_forward(self._model, self._data)
 
     def start_step(self) -> None:
-        """Compute poses, contacts and bias of the present state."""
+        """Compute poses and contacts of the present state."""
         self._step1(self._model, self._data)
         self._attractions.clear()
 
@@ -95,6 +94,10 @@ class Physics:
     def point_of(self, body: int, offset: Array) -> Array:
         """Return a point given in a body's frame in the world at the start of the last step, both (3,)."""
         return self._xpos[body] + self._rotations[body] @ offset
+
+    def axes_of(self, body: int) -> Array:
+        """Return the axes of a body in the world as columns, (3, 3)."""
+        return self._rotations[body]
 
     def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
         """Return force and torque about `point` (6,), world axes, exerted by contacts and pushes on bodies.

@@ -62,12 +62,13 @@ def test_a_plate_of_aluminium_is_not_picked(tmp_path: Path) -> None:
 
 
 def test_a_plate_too_heavy_for_the_magnet_stays_on_its_pedestal(tmp_path: Path) -> None:
-    """25 kg: it is held in touch and breaks off when the arm goes up, which is noticed above."""
+    """25 kg: it breaks off when the arm goes up, or is not lifted over the gap that an arm beside its model leaves."""
     cell = changed_cell(CELL, tmp_path, cell=lambda text: text.replace("mass_kg: 5.65", "mass_kg: 25.0"))
     tried = Application(behavior=BEHAVIOR, cell=cell, parameters={"attempts": 1})
     result = tried.run(tmp_path)
     assert result.outcome == "missed"
-    assert "the magnet of arm lost part plate" in causes(result)
+    noticed = ("the magnet of arm lost part plate", "the magnet of arm does not hold part plate")
+    assert any(cause in causes(result) for cause in noticed)
     assert tried.last("plate").xyz[1] < -0.6
 
 

@@ -83,10 +83,12 @@ def test_a_plate_of_aluminium_is_missed_and_the_arm_goes_home(tmp_path: Path) ->
     assert tried.left[-2:] == ["root/home_empty reached", "root missed"]
 
 
-def test_a_plate_too_heavy_for_the_magnet_is_lost_when_it_is_lifted_and_stays(tmp_path: Path) -> None:
+def test_a_plate_too_heavy_for_the_magnet_stays(tmp_path: Path) -> None:
+    """It breaks off when it is lifted, or is not lifted over the gap that an arm beside its model leaves."""
     cell = changed_cell(CELL, tmp_path, cell=lambda text: text.replace("mass_kg: 5.65", "mass_kg: 25.0"))
     tried = Application(behavior=BEHAVIOR, cell=cell, parameters={"obstacle": "none", **QUICK})
     result = tried.run(tmp_path)
     assert result.outcome == "missed"
-    assert "the magnet of arm lost part plate" in causes(result)
+    noticed = ("the magnet of arm lost part plate", "the magnet of arm does not hold part plate")
+    assert any(cause in causes(result) for cause in noticed)
     assert tried.last("plate").xyz[1] < -0.6

@@ -36,7 +36,7 @@ def frames_of(bus: SkillBus, arm: str) -> dict[str, Matrix]:
 @pytest.mark.virtual
 @pytest.mark.parametrize("name", ["dual_panda", "ur10", "irb4600", "servo_arm"])
 async def test_the_ghost_of_an_arm_at_its_measured_joints_is_the_arm(name: str, tmp_path: Path) -> None:
-    """Every body that is drawn of it, tool and fingers included."""
+    """Every body that is drawn of it, tool and fingers included, up to noise and the error of the base."""
     async with OpenCell(load_cell(CELLS / f"{name}.yaml"), store_path=str(tmp_path / "store.db")) as cell:
         scene = latest(cell.bus, "cell/scene", SceneDescription)
         topics = [each.name for each in cell.bus.listing() if each.type == RobotDescription.__name__]
@@ -49,7 +49,7 @@ async def test_the_ghost_of_an_arm_at_its_measured_joints_is_the_arm(name: str, 
             links = UrdfTree(arm.urdf).links(matrix_of_pose(arm.base), at, seen=seen)
             drawn = {g.frame.partition("/")[2] for g in scene.geometries if g.frame.startswith(f"{arm.name}/")}
             assert drawn
-            assert {link: np.allclose(links[link], seen[link], atol=1e-5) for link in drawn} == dict.fromkeys(
+            assert {link: np.allclose(links[link], seen[link], atol=2e-3) for link in drawn} == dict.fromkeys(
                 drawn, True
             )
 

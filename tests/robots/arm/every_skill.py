@@ -14,6 +14,7 @@ from engine.skill import Action
 from engine.skills.contact import MoveUntilContact
 from engine.skills.dmp import CartAdmitDMP, CartDMP, Compliance, JointDMP
 from engine.skills.guiding import GuideArm
+from engine.skills.identification import IdentifyFriction, IdentifyPayload
 from engine.skills.jogging import JogJoints, JogTool, StepJoints, StepTool
 from engine.skills.motion import CartLinTask, CartTrapVel, JointTrapVel
 from engine.skills.waypoints import FollowWaypoints, Waypoint
@@ -111,6 +112,8 @@ MAKERS: tuple[Maker, ...] = (
     lambda _, random_: StepJoints(step_rad=some(random_, 0.1, 7), speed=0.5),
     _step_tool,
     _until_contact,
+    lambda _, random_: IdentifyPayload(amplitude_rad=random_.uniform(0.1, 0.5)),
+    lambda _, random_: IdentifyFriction(joints=(random_.choice(panda_model().arm_joints),), amplitude_rad=0.2),
     lambda _, random_: GuideArm(damping=random_.random(), duration_s=random_.choice((None, 0.5))),
 )
 """One for each motion skill: from the measured joints and a random generator to a goal."""

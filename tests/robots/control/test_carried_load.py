@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from robots.port import MotionEnd, Tolerance
 from robots.scene.sim_scene import SimScene
 from robots.sim.physics.cell_model import CellModel, build_cell
 from robots.sim.world.sim_world import SimWorld
+from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import LIFTED, box, grasp, move, one_arm, opened, smooth
 from tests.robots.sim.stepped import SteppedArm
 
@@ -22,7 +24,7 @@ HEAVY: SimScene = one_arm(box("part", mass_kg=2.0))
 
 @pytest.fixture(scope="module", name="cell")
 def _cell() -> CellModel:
-    return build_cell(one_arm())
+    return build_cell(realistic(one_arm(), "ideal"))
 
 
 def sag_m(cell: CellModel, settings: ControlSettings, at_m: Vector3) -> float:
@@ -88,6 +90,8 @@ async def test_a_motion_that_fails_under_a_load_that_is_not_set_names_its_mass()
         )
         report = await motion.report()
     assert report.end is MotionEnd.FAILED
-    assert report.reason.endswith(
-        "the tool is pulled down as by 2.0 kg more than the load that is set (motion.SetLoad)"
+    # Up to 3 % more or less, and the offset of the sensor.
+    assert re.search(
+        r"the tool is pulled down as by (1\.9|2\.0|2\.1) kg more than the load that is set \(motion\.SetLoad\)$",
+        report.reason,
     )

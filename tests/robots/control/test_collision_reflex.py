@@ -168,7 +168,7 @@ async def test_without_thresholds_an_arm_never_stops_by_itself() -> None:
 async def test_its_own_fast_motion_trips_nothing() -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        arm.configure(ControlSettings(collision_torque_nm=(1.0,) * 7, collision_force_n=1.0))
+        arm.configure(ControlSettings(collision_torque_nm=(4.0, 4.0, 4.0, 4.0, 1.0, 1.0, 1.0), collision_force_n=2.0))
         assert (await move(arm, ABOVE_PART, 0.8)).end is MotionEnd.REACHED
 
 

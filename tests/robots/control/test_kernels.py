@@ -84,8 +84,8 @@ def test_a_tool_on_springs_and_dampers_is_pulled_as_the_law_says(seed: int, n: i
     turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
     error, behind, slower = random.normal(size=6), random.normal(size=n), random.normal(size=n)
     stiffness, root = random.uniform(1.0, 9.0, 6), random.uniform(0.1, 3.0, 6)
-    torque = np.zeros(n)
-    assert impedance_torque(world, turn, mass, error, behind, slower, stiffness, root, 2.0, 0.7, LIGHTEST, torque)
+    spring, damper, torque = random.uniform(0.5, 4.0, n), random.uniform(0.1, 2.0, n), np.zeros(n)
+    assert impedance_torque(world, turn, mass, error, behind, slower, stiffness, root, spring, damper, LIGHTEST, torque)
 
     to_base = np.kron(np.eye(2), turn.T)
     jacobian = to_base @ world
@@ -93,14 +93,14 @@ def test_a_tool_on_springs_and_dampers_is_pulled_as_the_law_says(seed: int, n: i
     bound = [LIGHTEST / 3.0 * float(np.trace(mobility[at : at + 3, at : at + 3])) for at in (0, 0, 0, 3, 3, 3)]
     inertia = np.linalg.inv(mobility + np.diag(bound))
     force = stiffness * (to_base @ error) + root * np.sqrt(np.diag(inertia)) * (jacobian @ slower)
-    joints = 2.0 * behind + 0.7 * np.sqrt(np.diag(mass)) * slower
+    joints = spring * behind + damper * np.sqrt(np.diag(mass)) * slower
     null_space = np.eye(n) - jacobian.T @ inertia @ jacobian @ np.linalg.inv(mass)
     assert torque == pytest.approx(jacobian.T @ force + null_space @ joints, rel=1e-7, abs=1e-7)
 
 
 def test_a_tool_on_an_arm_without_inertia_gets_no_torque() -> None:
-    ones, torque = np.ones(6), np.full(2, 5.0)
+    ones, pair, torque = np.ones(6), np.ones(2), np.full(2, 5.0)
     done = impedance_torque(
-        np.ones((6, 2)), np.eye(3), np.zeros((2, 2)), ones, torque, torque, ones, ones, 1.0, 1.0, LIGHTEST, torque
+        np.ones((6, 2)), np.eye(3), np.zeros((2, 2)), ones, torque, torque, ones, ones, pair, pair, LIGHTEST, torque
     )
     assert (done, torque.tolist()) == (False, [5.0, 5.0])

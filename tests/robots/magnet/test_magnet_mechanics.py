@@ -86,7 +86,7 @@ async def test_a_plate_held_at_its_side_does_not_peel_off() -> None:
 async def test_a_plate_that_is_not_magnetic_is_touched_and_not_held() -> None:
     async with reaching(cell(magnetic=False)) as reach:
         start, _ = reach.part("plate")
-        await come_near(reach, gap_m=-0.0005)
+        await come_near(reach, gap_m=-0.0015)
         await switch(reach, on=True)
         assert why_not(reach) == "the magnet touches plate and pulls at it with 0.0 N of 210 N"
         await reach.to((1.4, 0.2, TOP_M + 0.12))

@@ -35,7 +35,7 @@ def test_a_seed_moves_parts_and_adding_a_part_moves_no_other(document: CellDocum
 
 
 def test_the_realism_of_the_world_reaches_the_scene_with_the_seed_of_the_run(document: CellDocument) -> None:
-    assert (build_scene(document, seed=3).realism, build_scene(document).seed) == ("ideal", 0)
+    assert (build_scene(document, seed=3).realism, build_scene(document).seed) == ("typical", 0)
     poor = msgspec.structs.replace(document, world=MujocoWorld(realism="poor"))
     scene = build_scene(poor, seed=3)
     assert (scene.realism, scene.seed) == ("poor", 3)

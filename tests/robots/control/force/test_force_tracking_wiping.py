@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.force_controlled_wiping import FORCE_N, PANDA, UR10, Subject, Wiping, rms, three_passes
+from engine.document import RealismName
 from engine.skills.arm_control import ControllerName, ControlSettings
 from robots.port import MotionEnd
 from tests.tiers import nightly
@@ -23,15 +24,18 @@ ARMS_AND_LAWS = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.parametrize(("realism", "most_n"), [nightly("ideal", 0.5), ("typical", 0.75)])
 @ARMS_AND_LAWS
-def test_on_a_flat_surface_ten_newtons_stay_within_half_a_newton_while_moving(
-    subject: Subject, law: ControllerName
+def test_on_a_flat_surface_ten_newtons_are_kept_while_moving(
+    subject: Subject, law: ControllerName, realism: RealismName, most_n: float
 ) -> None:
-    wiping = Wiping(subject, slope=0.0, length_m=0.12, settings=ControlSettings(controller=law))
+    """Within half a newton by an ideal arm; noise and the offset of the sensor add a quarter."""
+    settings = ControlSettings(controller=law)
+    wiping = Wiping(subject, slope=0.0, length_m=0.12, settings=settings, realism=realism)
     made = wiping.wipe(learned=None, peak_m_s=0.1)
     assert made.report.end is MotionEnd.REACHED
-    assert np.abs(made.steady(after_s=SETTLED_S, step_s=0.001)).max() < 0.5
-    assert made.record.wrenches()[-1, 2] == pytest.approx(FORCE_N, abs=0.5)
+    assert np.abs(made.steady(after_s=SETTLED_S, step_s=0.001)).max() < most_n
+    assert made.record.wrenches()[-1, 2] == pytest.approx(FORCE_N, abs=most_n)
 
 
 @ARMS_AND_LAWS

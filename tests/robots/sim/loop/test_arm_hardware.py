@@ -28,7 +28,7 @@ def test_ideal_hardware_passes_everything_on() -> None:
     assert (position.tolist(), velocity.tolist()) == (HOME.tolist(), (REST + 0.1).tolist())
     assert hardware.drive(EFFORT_NM).tolist() == EFFORT_NM.tolist()
     assert hardware.effort(EFFORT_NM, step=4).tolist() == EFFORT_NM.tolist()
-    assert hardware.wrench(np.arange(6.0), step=4).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert hardware.wrench(np.arange(6.0), axes=np.eye(3), step=4).tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
 
 
 def test_positions_are_whole_counts_of_the_encoder_near_the_true_ones() -> None:
@@ -44,7 +44,7 @@ def test_noise_has_the_spread_of_the_preset_and_no_mean() -> None:
     hardware = new_hardware()
     velocities = np.array([hardware.joints(HOME, REST, step=step)[1] for step in range(STEPS)])
     efforts = np.array([hardware.effort(REST, step=step) for step in range(STEPS)])
-    wrenches = np.array([hardware.wrench(np.zeros(6), step=step) for step in range(STEPS)])
+    wrenches = np.array([hardware.wrench(np.zeros(6), axes=np.eye(3), step=step) for step in range(STEPS)])
     assert velocities.std(axis=0) == pytest.approx(np.full(7, TYPICAL.velocity_noise_rad_s), rel=0.06)
     assert efforts.std(axis=0) == pytest.approx(TYPICAL.torque_noise_share * EFFORT_NM, rel=0.06)
     spread = np.repeat((TYPICAL.force_noise_n, TYPICAL.moment_noise_nm), 3)

@@ -1,4 +1,7 @@
-"""What an arm feels: a known push is measured, its own tool and load are not, and a hidden weight is."""
+"""What an arm feels: a known push is measured, its own tool and load are not, and a hidden weight is.
+
+With an ideal plant: friction, noise and the offset of the sensor are in `test_arm_loop_realism`.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import pytest
 from engine.messages import Vector3
 from engine.skills.arm_control import ControlSettings
 from robots.sim.physics.cell_model import CellModel, build_cell
+from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import ABOVE_PART, one_arm
 from tests.robots.sim.stepped import SteppedArm
 
@@ -18,7 +22,7 @@ CONTROLLERS = pytest.mark.parametrize(
 
 @pytest.fixture(scope="module", name="cell")
 def _cell() -> CellModel:
-    return build_cell(one_arm())
+    return build_cell(realistic(one_arm(), "ideal"))
 
 
 @CONTROLLERS

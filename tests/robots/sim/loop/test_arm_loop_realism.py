@@ -66,7 +66,7 @@ def moved(arm: SteppedArm, goal: Array = ABOVE_PART, duration_s: float = 1.0) ->
 
 
 @SEEDS
-@pytest.mark.parametrize(("name", "least_mrad", "most_mrad"), [("typical", 0.2, 2.0), ("poor", 0.7, 6.0)])
+@pytest.mark.parametrize(("name", "least_mrad", "most_mrad"), [("typical", 0.03, 0.5), ("poor", 0.4, 3.0)])
 def test_an_arm_rests_beside_its_goal_by_friction_and_weight_over_stiffness(
     name: RealismName, least_mrad: float, most_mrad: float, seed: int
 ) -> None:
@@ -74,16 +74,17 @@ def test_an_arm_rests_beside_its_goal_by_friction_and_weight_over_stiffness(
     found = moved(SteppedArm(build_cell(realistic(one_arm(), name, seed=seed))))
     assert found.end is MotionEnd.REACHED
     assert least_mrad < 1e3 * found.off_rad.max() < most_mrad
-    assert 1e3 * found.behind_rad.max() < 3.0 * most_mrad
+    # About one period of the set point at 2.5 rad/s, and what friction and delay add.
+    assert 1e3 * found.behind_rad.max() < 2.6 + 2.0 * most_mrad
     # Coulomb friction of the unluckiest joint, and its share of wrong masses: a tenth of the weight of the arm at most.
     preset = realism(name)
     friction_nm = preset.coulomb_share * (1.0 + preset.friction_spread) * EFFORT_NM
-    weight_nm = 0.1 * np.abs(SteppedArm(build_cell(one_arm())).sample.effort_nm)
+    weight_nm = 0.1 * np.abs(SteppedArm(build_cell(realistic(one_arm(), "ideal"))).sample.effort_nm)
     assert (found.off_rad < (friction_nm + weight_nm + 0.05) / STIFFNESS_NM_RAD).all()
 
 
 def test_an_ideal_arm_is_where_it_shall_be() -> None:
-    found = moved(SteppedArm(build_cell(one_arm())))
+    found = moved(SteppedArm(build_cell(realistic(one_arm(), "ideal"))))
     assert found.off_rad.max() < 2e-5
     assert found.felt_nm.max() < 0.01
 
@@ -128,8 +129,8 @@ def test_a_push_is_estimated_up_to_friction_and_the_weight_that_is_not_known(see
 
 
 @SEEDS
-def test_a_moving_joint_feels_its_own_friction_as_an_external_torque(seed: int) -> None:
-    """The bias of an observer whose model has no friction: against the motion, of the size of the friction."""
+def test_a_moving_joint_feels_what_its_friction_differs_from_the_nominal_one(seed: int) -> None:
+    """An observer without a model of friction felt all of it, 1.2 N m here."""
     arm = SteppedArm(build_cell(realistic(one_arm(), seed=seed)))
     arm.run(0.3)
     rest_nm, _ = estimated(arm)
@@ -137,9 +138,11 @@ def test_a_moving_joint_feels_its_own_friction_as_an_external_torque(seed: int) 
     arm.follow(goal, 2.0)
     arm.run(0.85)
     moving_nm, _ = estimated(arm)
-    coulomb_nm = realism("typical").coulomb_share * float(EFFORT_NM[0])
-    assert -2.2 * coulomb_nm < moving_nm[0] < -0.6 * coulomb_nm
-    assert abs(rest_nm[0]) < coulomb_nm
+    preset = realism("typical")
+    coulomb_nm = preset.coulomb_share * float(EFFORT_NM[0])
+    viscous_nm = preset.viscous_share_s_rad * float(EFFORT_NM[0]) * 0.75
+    assert abs(moving_nm[0]) < preset.friction_spread * (coulomb_nm + viscous_nm) + 0.1
+    assert abs(rest_nm[0]) < 2.0 * coulomb_nm
 
 
 def test_no_fast_motion_of_its_own_trips_the_reflex_and_a_push_does(typical: CellModel) -> None:

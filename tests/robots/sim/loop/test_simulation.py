@@ -11,6 +11,7 @@ from robots.sim.commands.world_commands import CancelMotion
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import build_cell
+from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, PANDA, box, one_arm, smooth, two_arms
 
 
@@ -28,8 +29,8 @@ def steps(simulation: Simulation, count: int) -> None:
 
 
 def test_an_arm_without_commands_does_not_move() -> None:
-    """Gravity compensation is exact: two seconds leave it where it was."""
-    simulation = Simulation(build_cell(two_arms()))
+    """Gravity compensation of an ideal arm is exact: two seconds leave it where it was."""
+    simulation = Simulation(build_cell(realistic(two_arms(), "ideal")))
     steps(simulation, 2000)
     for arm in ("left", "right"):
         assert np.abs(measured(simulation).arm(arm).position_rad - HOME).max() < 1e-9

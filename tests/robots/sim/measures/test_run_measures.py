@@ -12,6 +12,7 @@ from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.measures.measure_layout import MeasureLayout
 from robots.sim.measures.run_measures import RunMeasures
 from robots.sim.physics.cell_model import CellModel, build_cell
+from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import ABOVE_PART, AT_PART, HOME, box, one_arm
 from tests.robots.sim.stepped import SteppedArm
 
@@ -24,6 +25,12 @@ CLOSE, OPEN = (0.0, 0.1, 20.0), (0.08, 0.1, 20.0)
 @pytest.fixture(scope="module", name="cell")
 def _cell() -> CellModel:
     return build_cell(one_arm(box(PART)))
+
+
+@pytest.fixture(scope="module", name="ideal")
+def _ideal() -> CellModel:
+    """Where a path, a speed and a force of nothing are exact."""
+    return build_cell(realistic(one_arm(box(PART)), "ideal"))
 
 
 @pytest.fixture(scope="module", name="reached")
@@ -68,9 +75,9 @@ def in_the_hand(arm: SteppedArm) -> Array:
     return arm.control.state.tool.rotation.T @ (part - arm.tool_xyz)
 
 
-def test_a_turn_of_the_first_joint_moves_the_tool_along_its_arc(cell: CellModel) -> None:
+def test_a_turn_of_the_first_joint_moves_the_tool_along_its_arc(ideal: CellModel) -> None:
     """Its length is radius times angle, its speed that of the set point; nothing is gripped and nothing touched."""
-    arm = SteppedArm(cell)
+    arm = SteppedArm(ideal)
     radius_m = float(np.hypot(*(arm.tool_xyz - [-0.55, 0.0, 0.0])[:2]))
     arm.follow(HOME + 0.5 * FIRST_JOINT, 1.0)
     arm.until_finished()
@@ -90,9 +97,9 @@ def test_a_turn_of_the_first_joint_moves_the_tool_along_its_arc(cell: CellModel)
     assert not any(name.startswith("left.gripper") for name in found)
 
 
-def test_another_tool_centre_point_is_no_path(cell: CellModel) -> None:
+def test_another_tool_centre_point_is_no_path(ideal: CellModel) -> None:
     """It is a change of the settings, not a movement."""
-    arm = SteppedArm(cell)
+    arm = SteppedArm(ideal)
     arm.run(0.1)
     arm.configure(ControlSettings(tool_xyz_m=(0.0, 0.0, 0.2)))
     arm.run(0.1)

@@ -40,5 +40,5 @@ async def test_a_part_is_pushed_away_by_more_than_its_friction(friction: float, 
         world.push("part", force_n=(3.0, 0.0, 0.0), duration_s=0.3)
         await asyncio.sleep(0.5)
         moved_m = _x_m(world) - before_m
-    # 1.04 N on 1 kg for 0.3 s, then braked by 1.96 N.
-    assert moved_m == pytest.approx(0.0716 if slides else 0.0, abs=0.005)
+    # 1.04 N on 1 kg for 0.3 s, then braked by 1.96 N; the mass differs by up to 3 %.
+    assert moved_m == pytest.approx(0.0716 if slides else 0.0, abs=0.01)

@@ -21,7 +21,7 @@ EFFORT_NM = np.array(PANDA.limits.effort_nm)
 
 @pytest.fixture(scope="module", name="ideal")
 def _ideal() -> CellModel:
-    return build_cell(one_arm(box("part")))
+    return build_cell(realistic(one_arm(box("part")), "ideal"))
 
 
 def links(cell: CellModel, arm: str = "left") -> list[int]:

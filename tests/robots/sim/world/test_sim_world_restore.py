@@ -119,7 +119,8 @@ async def test_an_arm_lost_in_mid_motion_rests_there_with_its_part_and_goes_on(c
     async with opened(SCENE) as world:
         await world.restore(carried.snapshot)
         assert (world.arm("left").sample().position_rad == carried.joints_rad).all()
-        assert (world.arm("left").sample().velocity_rad_s == 0.0).all()
+        # At rest, up to the noise of the measurement.
+        assert np.abs(world.arm("left").sample().velocity_rad_s).max() < 0.005
         check_rest(world, carried)
         await asyncio.sleep(2.0)
         check_rest(world, carried)

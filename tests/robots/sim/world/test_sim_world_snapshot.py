@@ -26,7 +26,9 @@ async def test_a_reopened_cell_holds_its_part_and_knows_that_it_does(tmp_path: P
     assert moving > 0.1
     async with opened_cell(tmp_path, seed=3) as cell:
         await cell.restore(snapshot)
-        assert (speed_rad_s(cell.bus), joint_state(cell.bus).position_rad) == (0.0, joints)
+        # At rest, up to the noise of the measurement.
+        assert speed_rad_s(cell.bus) < 0.005
+        assert joint_state(cell.bus).position_rad == pytest.approx(joints, abs=1e-4)
         await cell.bus.clock.sleep(2.0)
         assert part_height_m(cell.bus) == pytest.approx(height_m, abs=0.002)
         assert (await cell.bus.call(ReadGripper(), to="left/gripper")).held

@@ -63,10 +63,10 @@ async def test_what_an_arm_feels_is_reported_as_wrench_and_joint_torques() -> No
         await asyncio.sleep(1.0)
         torque = bus.topic("left/external", ExternalTorque).latest
         assert torque is not None
-        # The tool is 0.307 m before the base's axis.
-        assert torque.torque_nm[0] == pytest.approx(12.0 * 0.307, rel=0.03)
+        # The tool is 0.307 m before the base's axis; friction holds back up to 1.1 N m.
+        assert torque.torque_nm[0] == pytest.approx(12.0 * 0.307, abs=1.2)
         assert (torque.names[0], len(heard), heard[-1].frame) == ("panda_joint1", 100, "world")
-        assert heard[-1].force_n == pytest.approx((0.0, 12.0, 0.0), abs=0.05)
+        assert heard[-1].force_n == pytest.approx((0.0, 12.0, 0.0), abs=0.8)
 
 
 async def test_streams_come_in_real_time_as_well() -> None:

@@ -1,0 +1,84 @@
+"""Compensation of nominal friction: along a velocity in motion, and an integral within its bounds at rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robots.control.friction_compensation import SMOOTH_RAD_S, FrictionCompensation
+from robots.model.robot_model import JointFriction
+
+STEP_S = 0.001
+COULOMB_NM, VISCOUS_NMS_RAD = np.array([0.8, 0.1]), np.array([0.4, 0.05])
+STILL = np.zeros(2)
+
+
+def new_compensation() -> FrictionCompensation:
+    """The compensation of two joints."""
+    friction = JointFriction(coulomb_nm=(0.8, 0.1), viscous_nms_rad=(0.4, 0.05))
+    return FrictionCompensation(friction)
+
+
+def rested(spring_nm: tuple[float, float], seconds: float) -> FrictionCompensation:
+    """A compensation whose springs have carried these torques at rest."""
+    compensation = new_compensation()
+    for _ in range(round(seconds / STEP_S)):
+        compensation.integrate(np.array(spring_nm), velocity=STILL, step_s=STEP_S)
+    return compensation
+
+
+@settings(deadline=None)
+@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+def test_it_pushes_along_the_velocity_and_never_more_than_the_friction(first: float, second: float) -> None:
+    velocity = np.array([first, second])
+    torque = new_compensation().along(velocity)
+    assert (torque * velocity >= 0.0).all()
+    assert (np.abs(torque) <= COULOMB_NM + VISCOUS_NMS_RAD * np.abs(velocity)).all()
+    assert new_compensation().along(-velocity) == pytest.approx(-torque)
+
+
+def test_it_is_the_whole_friction_of_a_fast_joint_and_smooth_through_zero() -> None:
+    compensation = new_compensation()
+    assert compensation.along(np.array([1.0, -1.0])) == pytest.approx([1.2, -0.15])
+    assert compensation.along(STILL).tolist() == [0.0, 0.0]
+    little = 1e-4 * SMOOTH_RAD_S
+    slope = compensation.along(np.full(2, little)) / little
+    assert slope == pytest.approx(COULOMB_NM / SMOOTH_RAD_S + VISCOUS_NMS_RAD, rel=1e-6)
+
+
+def test_a_hand_is_helped_by_half_the_friction_and_by_no_more_than_it_pushes() -> None:
+    compensation, moving = new_compensation(), np.array([1.0, -1.0])
+    assert compensation.helping(moving, pushed_nm=np.array([5.0, -5.0])) == pytest.approx([0.6, -0.075])
+    assert compensation.helping(moving, pushed_nm=np.array([0.2, -0.01])) == pytest.approx([0.2, -0.01])
+    assert compensation.helping(moving, pushed_nm=np.array([-5.0, 5.0])).tolist() == [0.0, 0.0]
+    assert compensation.helping(moving, pushed_nm=STILL).tolist() == [0.0, 0.0]
+    assert compensation.helping(STILL, pushed_nm=np.array([5.0, 5.0])).tolist() == [0.0, 0.0]
+
+
+def test_at_rest_it_takes_over_what_the_springs_carry() -> None:
+    """A quarter of 0.5 N m in the first 125 ms at 2 a second."""
+    assert rested((0.5, -0.05), 0.125).integral_nm == pytest.approx([0.125, -0.0125], rel=1e-9)
+
+
+def test_it_takes_over_no_more_than_the_friction_however_long_a_contact_lasts() -> None:
+    """And lets go at once when the springs pull the other way: nothing is wound up."""
+    compensation = rested((40.0, -40.0), 5.0)
+    assert compensation.integral_nm == pytest.approx([0.8, -0.1])
+    after = compensation.integrate(np.array([-10.0, 10.0]), velocity=STILL, step_s=STEP_S)
+    assert after == pytest.approx([0.78, -0.08])
+
+
+def test_springs_within_the_dead_band_are_left_to_carry() -> None:
+    """An integral that goes on until a sticking joint breaks loose would hunt around its goal."""
+    assert rested((0.23, -0.029), 5.0).integral_nm.tolist() == [0.0, 0.0]
+
+
+def test_it_fades_while_the_set_point_moves_and_the_other_joints_with_it() -> None:
+    compensation = rested((0.8, 0.1), 2.0)
+    for _ in range(150):
+        compensation.integrate(np.array([5.0, 5.0]), velocity=np.array([0.1, 0.0]), step_s=STEP_S)
+    assert compensation.integral_nm == pytest.approx(COULOMB_NM * 0.98**150)
+    compensation.forget()
+    assert compensation.integral_nm.tolist() == [0.0, 0.0]
