@@ -86,9 +86,11 @@ class _FreeArm:
     def _measure(self) -> None:
         control = self.control
         error_rad = np.abs(control.motion.position - control.state.position)
-        wanted = self.kinematics.tool_pose(control.motion.position)
+        desired = self.kinematics.tool_pose(control.motion.position)
         self.joint_error_rad = max(self.joint_error_rad, float(error_rad.max()))
-        self.tool_error_m = max(self.tool_error_m, wanted.distance_m(self.kinematics.tool_pose(control.state.position)))
+        self.tool_error_m = max(
+            self.tool_error_m, desired.distance_m(self.kinematics.tool_pose(control.state.position))
+        )
         self.torque_nm = max(self.torque_nm, float(np.abs(control.state.external_nm).max()))
 
 

@@ -34,7 +34,7 @@ from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 
 STEP_S = 0.001
-CONTACT_N, PEAK_N, WANTED_N = 5.0, 10.0, 15.0
+CONTACT_N, PEAK_N, DESIRED_N = 5.0, 10.0, 15.0
 GAP_M, CLEAR_M, PRESS_GAP_M, ALONG_M, SLOPE = 0.05, 0.045, 0.01, 0.04, 0.05
 # How far beyond the tool centre point the pads of each arm touch the inclined surface.
 PADS_M = {"panda": 0.0121, "ur10": -0.0055}
@@ -138,13 +138,13 @@ class TouchRig:
         return self._finished()
 
     def press(self, *, touch_m_s: float = Compliance().touch_m_s, speed_m_s: float = 0.05) -> Touch:
-        """Press with `WANTED_N` while the tool moves along; `touch_m_s` of 0.05 is that of the damping alone."""
+        """Press with `DESIRED_N` while the tool moves along; `touch_m_s` of 0.05 is that of the damping alone."""
         joints = self.control.motion.position.copy()
         here = self.kinematics.tool_pose(joints)
         end = RigidTransform(xyz=here.xyz + ALONG_M * self._along, xyzw=here.xyzw)
         trajectory = plan_line(self.kinematics, joints, end, duration_s=PEAK_SPEED * ALONG_M / speed_m_s)
         wrench = np.zeros((len(trajectory.position_rad), 6))
-        wrench[:, 2] = WANTED_N
+        wrench[:, 2] = DESIRED_N
         law = Compliance(touch_m_s=touch_m_s)
         task = ForceTask(trajectory=trajectory, offset=np.zeros_like(wrench), wrench=wrench, admittance=law)
         self._number += 1

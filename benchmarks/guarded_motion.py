@@ -56,9 +56,9 @@ async def main() -> None:
                     result = await search(cell.bus, law=law, speed_m_s=speed_m_s, force_n=5.0, peak_n=peak_n)
                     error_mm = (result.pose.xyz[2] - TIP_M) * 1e3
                     found = "yes" if result.contact else "no"
-                    wanted = "–" if peak_n is None else f"{peak_n:g}"
+                    desired = "–" if peak_n is None else f"{peak_n:g}"
                     figures = f"{error_mm:.3f} | {result.force_n:.1f} | {result.peak_n:.1f} | {result.duration_s:.1f}"
-                    print(f"| {law} | {speed_m_s * 1e3:.0f} | {wanted} | {found} | {figures} |", flush=True)
+                    print(f"| {law} | {speed_m_s * 1e3:.0f} | {desired} | {found} | {figures} |", flush=True)
 
 
 if __name__ == "__main__":

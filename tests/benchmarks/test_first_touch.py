@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.first_touch import PANDA, PEAK_N, PRESS_GAP_M, UR10, WANTED_N, Subject, TouchRig
+from benchmarks.first_touch import PANDA, PEAK_N, PRESS_GAP_M, UR10, DESIRED_N, Subject, TouchRig
 from robots.port import MotionEnd
 from tests.tiers import nightly
 
@@ -33,6 +33,6 @@ def test_force_control_that_begins_above_a_rigid_surface_touches_it_with_little_
     gentle = TouchRig(subject, stiffness_n_m=None, gap_m=PRESS_GAP_M)
     pressed = gentle.press()
     assert pressed.report.end is MotionEnd.REACHED
-    assert pressed.forces_n[-1] == pytest.approx(WANTED_N, abs=1.0)
+    assert pressed.forces_n[-1] == pytest.approx(DESIRED_N, abs=1.0)
     assert pressed.peak_n < 25.0
     assert damped.press(touch_m_s=0.05).peak_n > 45.0

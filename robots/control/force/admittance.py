@@ -48,9 +48,9 @@ class AdmittanceLoop:
     def press(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
         """Advance so that the measured wrench converges to the target one, (6,); `total` is the whole offset."""
         for axis in self._axes:
-            felt, wanted = float(measured[axis]), float(target[axis])
-            damping = self._damping(axis, felt, wanted)
-            self._move(axis, step_s, felt - wanted, damping, float(feed_forward[axis]))
+            force, desired = float(measured[axis]), float(target[axis])
+            damping = self._damping(axis, force, desired)
+            self._move(axis, step_s, force - desired, damping, float(feed_forward[axis]))
         self._add_up(feed_forward)
 
     def relieve(self, step_s: float, *, measured: Array, target: Array, feed_forward: Array) -> None:
@@ -62,13 +62,13 @@ class AdmittanceLoop:
             self._move(axis, step_s, float(excess), self._law.damping[axis], float(feed_forward[axis]))
         self._add_up(feed_forward)
 
-    def _damping(self, axis: int, felt: float, wanted: float) -> float:
+    def _damping(self, axis: int, force: float, desired: float) -> float:
         """Return the damping: that of the law where the tool presses, more where it does not touch yet."""
         damping = self._law.damping[axis]
-        if wanted == 0.0:
+        if desired == 0.0:
             return damping
-        free = max(damping, self._law.active[axis] * abs(wanted) / self._touch[axis])
-        share = min(1.0, max(0.0, felt / (_PRESSING_SHARE * wanted)))
+        free = max(damping, self._law.active[axis] * abs(desired) / self._touch[axis])
+        share = min(1.0, max(0.0, force / (_PRESSING_SHARE * desired)))
         return free + share * (damping - free)
 
     def _move(self, axis: int, step_s: float, error: float, damping: float, feed_forward: float) -> None:
