@@ -9,6 +9,7 @@ import msgspec
 from engine.messages import Message, Pose, Vector3, Wrench
 from engine.skill import Action
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionFeedback
 
 MaxDistance = Annotated[float, msgspec.Meta(gt=0.0, description="Maximum distance", extra_json_schema={"unit": "m"})]
@@ -53,3 +54,4 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
     frame: Axes = "world"
     speed_m_s: ApproachSpeed = 0.02
     force_n: ContactForce = 10.0
+    collisions: CollisionOptions = CollisionOptions()

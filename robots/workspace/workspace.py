@@ -134,6 +134,11 @@ class Workspace:
         """True if the cell has more than one arm."""
         return self._scene().arms > 1
 
+    @property
+    def part_names(self) -> frozenset[str]:
+        """Names of the parts of the cell; await `ready` first."""
+        return self._scene().part_names
+
     def scene_for(self, arm: str) -> PlanningScene:
         """Return the current scene for `arm`; await `ready` first."""
         live = self._scene()

@@ -32,7 +32,8 @@ class Approach:
     """Parameters of an approach to a pose and of the retreat from it.
 
     `out_m` is the vector in the world from the pose to the pre-approach position, `onward_m` to the position of the
-    arm afterwards. `expected` returns whether a pair may touch at the pose; `kind` is the state's name in causes.
+    arm afterwards. `expected` returns whether a pair may touch at the pose, `may_touch` names what the arm may touch
+    on the lines; `kind` is the state's name in causes.
     """
 
     robot: str
@@ -43,6 +44,7 @@ class Approach:
     margin_m: Margin
     patience_s: BlockedPathTimeout
     expected: Callable[[TouchingPair], bool]
+    may_touch: tuple[str, ...]
     kind: str
 
     async def to(
@@ -70,7 +72,9 @@ class Approach:
 
     async def straight_to(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Move on a straight line to a pose."""
-        return await move_along_line(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
+        return await move_along_line(
+            ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind, may_touch=self.may_touch
+        )
 
     async def straight_out(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Move on a straight line from `pose` back to its pre-approach position."""

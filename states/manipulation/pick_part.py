@@ -151,6 +151,7 @@ class PickPart(State, frozen=True, kw_only=True):
             margin_m=self.margin_m,
             patience_s=self.patience_s,
             expected=self._may_touch,
+            may_touch=(self.part,),
             kind=self.state_name,
         )
 

@@ -109,6 +109,7 @@ class PlacePart(State, frozen=True, kw_only=True):
             margin_m=self.margin_m,
             patience_s=self.patience_s,
             expected=self._is_support_contact,
+            may_touch=(self.part,),
             kind=self.state_name,
         )
 

@@ -12,6 +12,7 @@ from engine.errors import Cause
 from engine.messages import Vector3
 from engine.skills import contact
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.contact import ApproachSpeed, ContactForce, MaxDistance
 from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
@@ -35,6 +36,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     frame: Axes = "world"
     speed_m_s: ApproachSpeed = 0.02
     force_n: ContactForce = 10.0
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -48,6 +50,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
             frame=self.frame,
             speed_m_s=self.speed_m_s,
             force_n=self.force_n,
+            collisions=self.collisions,
         )
         end = await ctx.perform(goal, to=self.robot)
         what = f"{self.robot} detected no contact within {self.distance_m:.3f} m"
