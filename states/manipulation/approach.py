@@ -19,6 +19,10 @@ from states.motion.move_free import MoveFree
 from states.scene.scene_parameter_types import CELL
 
 _ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
+OPENING_STEPS_M = (0.0, 0.015, 0.03, 0.06, 1.0)
+"""Steps of the sweep of fingers that open or close; beyond the widest opening they stay there. Narrower than a
+held part they are inside of it, where nothing else is."""
+
 _MAX_CONFIGURATIONS = 8
 """Maximum number of arm configurations tried per pose."""
 _REPORTED_DEPTH_M = 0.001
@@ -33,7 +37,8 @@ class Approach:
 
     `out_m` is the vector in the world from the pose to the pre-approach position, `onward_m` to the position of the
     arm afterwards. `expected` returns whether a pair may touch at the pose, `may_touch` names what the arm may touch
-    on the lines; `kind` is the state's name in causes.
+    on the lines, `openings_m` are those that the fingers pass through at the pose; `kind` is the state's name in
+    causes.
     """
 
     robot: str
@@ -45,6 +50,7 @@ class Approach:
     patience_s: BlockedPathTimeout
     expected: Callable[[TouchingPair], bool]
     may_touch: tuple[str, ...]
+    openings_m: tuple[float, ...]
     kind: str
 
     async def to(
@@ -106,7 +112,8 @@ class Approach:
     async def _pre_approach_joints(
         self, ctx: Context, pose: Pose, joints: tuple[float, ...]
     ) -> tuple[float, ...] | SequenceEnd:
-        report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
+        check = CheckCollision(robot=self.robot, joints=joints, openings_m=self.openings_m)
+        report = await ctx.call(check, to=CELL)
         pairs = [_describe_pair(pair) for pair in report.touching if not self.expected(pair)]
         if pairs:
             message = f"at the target, {', '.join(pairs)} would touch"

@@ -82,6 +82,9 @@ class PathGuard:
         workspace = self.workspace
         await workspace.ready()
         await workspace.fresh()
+        if tool_contact == "at_end":
+            # The scene allows contact of a part with what it was picked from, at any depth.
+            await self._attached.require_free(trajectory)
         carried = await self._carried(trajectory.position_rad[0])
         rules = PathRules(tool_contact=tool_contact, may_touch=(*options.may_touch, *carried))
         check = await self.check(trajectory, rules, from_s=0.0)
@@ -91,8 +94,6 @@ class PathGuard:
                 where=self.arm,
                 hint=_HINT,
             )
-        if tool_contact == "at_end":
-            await self._attached.require_free(trajectory)
         await self._through_known_space(trajectory, kinematics)
         return rules
 
@@ -133,6 +134,9 @@ class PathGuard:
             CollisionRequest(scene=scene, arm=self.arm, joints_rad=tuple(float(q) for q in joints), margin_m=_CARRIED_M)
         )
         touched = {name for pair in report.touching for name in (pair.first, pair.second)}
+        # A part that was detached may touch the links that still hold it.
+        own = f"{self.arm}/"
+        touched |= {name for pair in scene.allowed for name in pair if any(one.startswith(own) for one in pair)}
         return tuple(sorted(touched & parts))
 
     async def _moves_away(self, pairs: tuple[NamePair, ...]) -> bool:

@@ -216,3 +216,26 @@ async def test_an_arm_that_is_held_before_something_does_not_go_on_into_it(tmp_p
         await witness.end()
         assert (end.status, witness.touched) == (GoalStatus.ABORTED, set())
         assert opened.speed_rad_s() < REST_RAD_S
+
+
+# Stretched out, each arm reaches beyond the middle between them.
+FAR_THERE, FAR_MIDDLE, FAR_ACROSS = ((turn, 0.4, 0.0, -1.9, 0.0, 2.3, 0.8) for turn in (1.0, 0.0, -1.0))
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize(("collisions", "ends"), [(CollisionOptions(), "stopped"), (BLIND, "touched")])
+async def test_an_arm_stops_before_another_one_that_gets_into_its_path(
+    tmp_path: Path, collisions: CollisionOptions, ends: str
+) -> None:
+    """One that does not look touches it."""
+    async with free_cell(tmp_path) as opened:
+        await go(opened, FAR_THERE)
+        right = opened.bus.send_goal(JointTrapVel(joints=FAR_MIDDLE, speed=0.4, collisions=BLIND), to="right")
+        await opened.until(lambda: opened.speed_rad_s("right") > 0.2)
+        end, why, touched = await end_of(opened, JointTrapVel(joints=FAR_ACROSS, speed=0.15, collisions=collisions))
+        await right.result()
+        assert (end.status is GoalStatus.SUCCEEDED, bool(touched)) == (False, ends == "touched"), (why, touched)
+        if ends == "stopped":
+            assert "left/" in why
+            assert "would touch right/" in why
+            assert opened.speed_rad_s() < REST_RAD_S
