@@ -1,4 +1,4 @@
-"""The contacts of an arm are known with its fingers as they will be: what they hit as they open is told beforehand."""
+"""The contacts of an arm are known with its fingers as they will be: what they hit as they open is reported beforehand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ async def contacts(opened: FreeCell, pose: Pose, *openings_m: float) -> set[Name
 
 
 @pytest.mark.virtual
-async def test_a_finger_that_opens_beside_a_part_is_told_before_it_pushes_the_part(tmp_path: Path) -> None:
+async def test_a_finger_that_opens_beside_a_part_is_reported_before_it_pushes_the_part(tmp_path: Path) -> None:
     async with free_cell(tmp_path) as opened:
         x, y, _ = (0.11, -0.28, 0.0)
         beside = Pose(xyz=(x, y + BESIDE_M, 0.028), xyzw=DOWN)
@@ -39,7 +39,7 @@ async def test_a_finger_that_opens_beside_a_part_is_told_before_it_pushes_the_pa
             end = await opened.bus.send_goal(goal, to="right").result()
             assert end.status is GoalStatus.SUCCEEDED, end.cause
         assert (await contacts(opened, beside), opened.touching("right")) == (set(), "")
-        told = await contacts(opened, beside, 0.01, 0.04, 1.0)
-        assert any("finger" in pair[0] and pair[1] == "hca_south" for pair in told), told
+        reported = await contacts(opened, beside, 0.01, 0.04, 1.0)
+        assert any("finger" in pair[0] and pair[1] == "hca_south" for pair in reported), reported
         await opened.bus.send_goal(GripperOpen(), to="right/gripper").result()
         assert "hca_south" in opened.touching("right")
