@@ -18,6 +18,7 @@ from engine.cell.open_cell import OpenCell
 from engine.document.cell import Cell
 from engine.messages import JointState
 from engine.messages.separation import SeparationState
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointTrapVel
 from engine.skills.people import ContactCount, CountContacts, Reach, Withdraw
 from engine.skills.planning import Adaptation, FreeMotionFeedback, FreeMotionResult, MotionTarget, MoveFree, PlanOptions
@@ -30,6 +31,7 @@ MARGIN_M = 0.03
 WAITS_S = 4.0
 """An arm that has waited so long before a hand that stays is done waiting for; then the hand is taken away."""
 
+_BLIND = CollisionOptions(avoid=False)
 _LOOK_S = 0.01
 _MOVES_RAD_S = 0.01
 _PATIENCE_S = 120.0
@@ -95,7 +97,9 @@ class IntrudedCell:
 
     async def stopping_s(self, undisturbed: UndisturbedMotion) -> float:
         """Return how long the arm takes to stop from half of a path, from where that path starts; it then goes it."""
-        handle = self.bus.send_goal(JointTrapVel(joints=undisturbed.goal, speed=self._speed), to=self.arm)
+        handle = self.bus.send_goal(
+            JointTrapVel(joints=undisturbed.goal, speed=self._speed, collisions=_BLIND), to=self.arm
+        )
         await self._until_it_moves(handle)
         await self.bus.clock.sleep(undisturbed.duration_s / 2.0)
         started_s = self.bus.clock.now_s()
@@ -151,7 +155,8 @@ class IntrudedCell:
     def _start(self, undisturbed: UndisturbedMotion, *, adapts: bool) -> GoalHandle[Any, Any]:
         if adapts:
             return self.bus.send_goal(self._free_goal(MotionTarget(joints=undisturbed.goal)), to=self.arm)
-        return self.bus.send_goal(JointTrapVel(joints=undisturbed.goal, speed=self._speed), to=self.arm)
+        blind = JointTrapVel(joints=undisturbed.goal, speed=self._speed, collisions=_BLIND)
+        return self.bus.send_goal(blind, to=self.arm)
 
     def _free_goal(self, target: MotionTarget) -> MoveFree:
         return MoveFree(

@@ -9,6 +9,7 @@ import msgspec
 from engine.messages import Message, Pose, Vector3, Wrench
 from engine.skill import Action
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionFeedback
 
 MaxDistance = Annotated[float, msgspec.Meta(gt=0.0, description="Maximum distance", extra_json_schema={"unit": "m"})]
@@ -84,3 +85,4 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
     peak_n: PeakForce | None = None
     clear_m: ClearDistance = 0.0
     surface_n_m: SurfaceStiffness = RIGID_N_M
+    collisions: CollisionOptions = CollisionOptions()

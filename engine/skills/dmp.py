@@ -15,6 +15,7 @@ from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 
 Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 selects it by the fit")]
@@ -33,6 +34,7 @@ class JointDMP(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_o
     dmp: JointDmp
     goal: tuple[float, ...] = ()
     start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.1
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -46,6 +48,7 @@ class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only
     goal: Pose | None = None
     start_reach_m: Annotated[float, msgspec.Meta(ge=0.0)] = 0.03
     start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.2
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class Compliance(Message, frozen=True, kw_only=True):
@@ -114,6 +117,7 @@ class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_o
     N: Kernels = 0
     start_reach_m: Annotated[float, msgspec.Meta(ge=0.0)] = 0.03
     start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.2
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class TrimInterval(Message, frozen=True, kw_only=True):

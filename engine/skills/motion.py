@@ -12,6 +12,7 @@ import msgspec
 
 from engine.messages import Message, Pose
 from engine.skill import Action, Service
+from engine.skills.collision_options import CollisionOptions
 
 Speed = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="Fraction of the joint speed limits")]
 PoseMatch = Annotated[
@@ -56,6 +57,7 @@ class JointTrapVel(Action[JointMotionResult, JointMotionFeedback], frozen=True, 
 
     joints: tuple[float, ...]
     speed: Speed
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class CartTrapVel(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -68,6 +70,7 @@ class CartTrapVel(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
     pose: Pose
     speed: Speed
     match: PoseMatch = "pose"
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class CartLinTask(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -79,6 +82,7 @@ class CartLinTask(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
 
     pose: Pose
     duration_s: Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class ForwardKinematics(Service[Pose], frozen=True, kw_only=True):

@@ -13,6 +13,7 @@ import msgspec
 
 from engine.messages import Message, Pose, Vector3
 from engine.skill import Action
+from engine.skills.collision_options import BlockedPathTimeout
 from engine.skills.motion import PoseMatch, Speed
 
 PlannerName = Annotated[
@@ -28,10 +29,6 @@ PlanningTime = Annotated[
 Margin = Annotated[
     float,
     msgspec.Meta(ge=0.0, le=0.2, description="Clearance from obstacles", extra_json_schema={"unit": "m"}),
-]
-BlockedPathTimeout = Annotated[
-    float,
-    msgspec.Meta(ge=0.0, le=3600.0, description="Maximum wait for a free path", extra_json_schema={"unit": "s"}),
 ]
 Tilt = Annotated[
     float, msgspec.Meta(gt=0.0, le=3.2, description="Maximum rotation of the tool", extra_json_schema={"unit": "rad"})

@@ -112,7 +112,12 @@ class CollisionReport(Message, frozen=True, kw_only=True):
 
 
 class CheckCollision(Service[CollisionReport], frozen=True, kw_only=True):
-    """Return the contacts of an arm at `joints` (radians), the measured configuration when empty."""
+    """Return the contacts of an arm at `joints` (radians), the measured configuration when empty.
+
+    With `openings_m` the fingers of its gripper are at each of these openings in turn, instead of where they are: it
+    reports all contacts, each at its deepest. Openings that are not possible count as the nearest possible one.
+    """
 
     robot: str
     joints: tuple[float, ...] = ()
+    openings_m: tuple[float, ...] = ()

@@ -8,6 +8,7 @@ import msgspec
 
 from engine.messages import Message, Pose
 from engine.skill import Action
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointMotionResult, PoseMatch, Speed
 
 MOST_WAYPOINTS = 500
@@ -62,3 +63,4 @@ class FollowWaypoints(Action[WaypointsResult, WaypointsFeedback], frozen=True, k
     speed: Speed = 0.5
     speed_m_s: ToolSpeed | None = None
     match: PoseMatch = "pose"
+    collisions: CollisionOptions = CollisionOptions()

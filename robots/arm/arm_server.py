@@ -22,7 +22,7 @@ from robots.arm.guiding_motions import GuidingMotions
 from robots.arm.identification.identification_motions import IdentificationMotions
 from robots.arm.jogging.jog_motions import JogMotions
 from robots.arm.path_motions import PathMotions
-from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
+from robots.arm.scene_queries.path_guard import PathGuard
 from robots.arm.services.arm_control_services import ArmControlServices
 from robots.arm.services.arm_status import ArmStatusPublisher
 from robots.arm.services.forward_preview import ForwardPreview
@@ -57,7 +57,7 @@ class ArmServer:
         outputs: The digital outputs of its controller, if any.
         tolerance: Following tolerance of the port.
         workspace: The workspace shared with other arms; without one the arm has no collision-free motions and
-            does not track attached parts.
+            checks no path.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class ArmServer:
             port=port,
             clock=clock,
             tolerance=tolerance or Tolerance(),
-            carry=AttachedPartGuard(name, workspace) if workspace is not None else None,
+            path_guard=PathGuard(name, workspace) if workspace is not None else None,
         )
         self._gripper = gripper
         self._report = report = ArmStatusPublisher(runner)

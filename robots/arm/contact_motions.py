@@ -10,6 +10,7 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected
 from engine.skills.contact import ContactResult, MoveUntilContact
 from engine.skills.motion import CartMotionFeedback
+from robots.arm.execution.given_path import given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.trajectory_goal import publish_pose_feedback
@@ -46,18 +47,19 @@ class ContactMotions:
             raise GoalRejected(f"{goal.distance_m} m is not a distance", where=handle.address, hint="`distance_m: 0.1`")
         end = RigidTransform(xyz=start.xyz + goal.distance_m * direction, xyzw=start.xyzw)
         profile, duration_s = self._profile(goal, direction, handle)
-        trajectory = await runner.planned(
-            handle,
-            lambda joints: runner.planner.make(
-                lambda kinematics: plan_line(kinematics, joints, end, duration_s=duration_s, profile=profile)
-            ),
-        )
-        before = runner.measured_tool()
-        ended = await runner.carry_out(
-            lambda: self._follow(trajectory, goal.force_n, direction),
-            handle,
-            lambda motion: publish_pose_feedback(runner, handle, motion),
-        )
+        async with given_path(runner, goal.collisions, tool_contact="ends_path") as path:
+            trajectory = await path.planned(
+                handle,
+                lambda joints: runner.planner.make(
+                    lambda kinematics: plan_line(kinematics, joints, end, duration_s=duration_s, profile=profile)
+                ),
+            )
+            before = runner.measured_tool()
+            ended = await runner.carry_out(
+                lambda: path.monitored(self._follow(trajectory, goal.force_n, direction)),
+                handle,
+                lambda motion: publish_pose_feedback(runner, handle, motion),
+            )
         measured, wrench = runner.measured_tool(), runner.port.sample().wrench
         return ContactResult(
             contact=ended.report.contact,

@@ -18,6 +18,7 @@ from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnedCartDmp, L
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from engine.store import decode_entry
+from robots.arm.execution.given_path import given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
@@ -62,10 +63,11 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned_with_attached_parts(
-            handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
-        )
-        return await follow_joints(runner, trajectory, handle)
+        async with given_path(runner, goal.collisions) as path:
+            trajectory = await path.planned(
+                handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
+            )
+            return await follow_joints(runner, trajectory, handle, monitored=path.monitored)
 
     async def _cart_dmp(self, goal: CartDMP, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
         runner = self._runner
@@ -83,10 +85,11 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned_with_attached_parts(
-            handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
-        )
-        return await follow_tool(runner, trajectory, handle)
+        async with given_path(runner, goal.collisions) as path:
+            trajectory = await path.planned(
+                handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
+            )
+            return await follow_tool(runner, trajectory, handle, monitored=path.monitored)
 
     async def _learn_joint_dmp(self, request: LearnJointDmp) -> LearnedJointDmp:
         recorded = await self._recording(request)

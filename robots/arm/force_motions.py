@@ -10,6 +10,7 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.messages.primitives import CartOffsets
 from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult
 from robots.arm.dmp_motions import frame_of
+from robots.arm.execution.given_path import given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, plan_cart_dmp, wrench_at
@@ -62,10 +63,6 @@ class ForceMotions:
                 slow_per_n=goal.slow_per_n,
             )
 
-        task = await runner.planned(
-            handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
-        )
-
         def publish_feedback(motion: Motion) -> None:
             wrench = to_wrench(runner.port.sample().wrench)
             handle.feedback(CartAdmitFeedback(wrench=wrench, pose=runner.measured_pose(), progress=motion.progress))
@@ -76,12 +73,16 @@ class ForceMotions:
                 offsets=None, pose=pose, force_error_rms_n=0.0, force_error_max_n=0.0, duration_s=duration_s
             )
 
-        ended = await runner.carry_out(
-            lambda: runner.port.track_force(task, tolerance=runner.tolerance),
-            handle,
-            publish_feedback,
-            failed_result=failed_result,
-        )
+        async with given_path(runner, goal.collisions, tool_contact="along_path") as path:
+            task = await path.planned(
+                handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
+            )
+            ended = await runner.carry_out(
+                lambda: path.monitored(runner.port.track_force(task, tolerance=runner.tolerance)),
+                handle,
+                publish_feedback,
+                failed_result=failed_result,
+            )
         record = ForceRecord.from_bytes(ended.report.data) if ended.report.data else None
         passed = record is not None and len(record.shares()) > 0 and not handle.cancel_requested
         errors = _Errors(rms_n=0.0, max_n=0.0) if record is None else force_errors(task, record)

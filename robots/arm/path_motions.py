@@ -19,6 +19,7 @@ from engine.skills.motion import (
     JointMotionResult,
     JointTrapVel,
 )
+from robots.arm.execution.given_path import given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
@@ -43,21 +44,22 @@ class PathMotions:
 
     async def _joint_trap_vel(self, goal: JointTrapVel, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
         runner = self._runner
-        trajectory = await runner.planned_with_attached_parts(
-            handle, lambda start: runner.planner.to_joints(start, np.array(goal.joints), speed=goal.speed)
-        )
-        return await follow_joints(runner, trajectory, handle)
+        async with given_path(runner, goal.collisions) as path:
+            trajectory = await path.planned(
+                handle, lambda start: runner.planner.to_joints(start, np.array(goal.joints), speed=goal.speed)
+            )
+            return await follow_joints(runner, trajectory, handle, monitored=path.monitored)
 
     async def _cart_trap_vel(self, goal: CartTrapVel, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
         planner, match = self._runner.planner, PoseMatch.of(goal.match)
         return await self._cartesian(
-            goal.pose, handle, lambda start, pose: planner.to_pose(start, pose, speed=goal.speed, match=match)
+            goal, handle, lambda start, pose: planner.to_pose(start, pose, speed=goal.speed, match=match)
         )
 
     async def _cart_lin_task(self, goal: CartLinTask, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
         planner = self._runner.planner
         return await self._cartesian(
-            goal.pose, handle, lambda start, pose: planner.along_line(start, pose, duration_s=goal.duration_s)
+            goal, handle, lambda start, pose: planner.along_line(start, pose, duration_s=goal.duration_s)
         )
 
     async def _forward_kinematics(self, request: ForwardKinematics) -> Pose:
@@ -74,11 +76,12 @@ class PathMotions:
 
     async def _cartesian(
         self,
-        pose: Pose,
+        goal: CartTrapVel | CartLinTask,
         handle: ActiveGoal[CartMotionFeedback],
         plan: Callable[[Array, RigidTransform], Awaitable[JointTrajectory]],
     ) -> CartMotionResult:
         runner = self._runner
-        target = runner.target(pose, handle)
-        trajectory = await runner.planned_with_attached_parts(handle, lambda start: plan(start, target))
-        return await follow_tool(runner, trajectory, handle)
+        target = runner.target(goal.pose, handle)
+        async with given_path(runner, goal.collisions) as path:
+            trajectory = await path.planned(handle, lambda start: plan(start, target))
+            return await follow_tool(runner, trajectory, handle, monitored=path.monitored)

@@ -11,6 +11,7 @@ import numpy as np
 from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected, RobotError
 from engine.skills.waypoints import FollowWaypoints, Waypoint, WaypointsFeedback, WaypointsResult
+from robots.arm.execution.given_path import GivenPath, given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.validate_numbers import are_numbers
 from robots.model.inverse_kinematics import PoseMatch
@@ -55,13 +56,14 @@ class WaypointMotions:
             plans.append(plan_waypoints(kinematics, start, targets, goal))
             return plans[-1].trajectory
 
-        trajectory = await runner.planned_with_attached_parts(
-            handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
-        )
-        return await self._follow(plans[-1], trajectory, handle)
+        async with given_path(runner, goal.collisions) as path:
+            trajectory = await path.planned(
+                handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
+            )
+            return await self._follow(plans[-1], trajectory, path, handle)
 
     async def _follow(
-        self, plan: WaypointPlan, trajectory: JointTrajectory, handle: ActiveGoal[WaypointsFeedback]
+        self, plan: WaypointPlan, trajectory: JointTrajectory, path: GivenPath, handle: ActiveGoal[WaypointsFeedback]
     ) -> WaypointsResult:
         runner = self._runner
         start, passed = runner.set_point(), 0
@@ -78,7 +80,10 @@ class WaypointMotions:
             )
 
         ended = await runner.carry_out(
-            lambda: runner.port.follow(trajectory, tolerance=runner.tolerance), handle, publish, failed_result=result
+            lambda: path.monitored(runner.port.follow(trajectory, tolerance=runner.tolerance)),
+            handle,
+            publish,
+            failed_result=result,
         )
         return result(ended.duration_s)
 

@@ -31,6 +31,11 @@ class GripperModel(Mechanism, frozen=True, kw_only=True, tag="parallel"):
         """Return the hand, the fingers and the links of the pads."""
         return (self.hand_link, *self.finger_links, *(pad.link for pad in self.pads))
 
+    def joints_at(self, opening_m: float) -> dict[str, float]:
+        """Return both finger joints at an opening, or at the nearest possible one."""
+        half_m = min(max(0.0, opening_m), self.max_width_m) / 2.0
+        return dict.fromkeys(self.finger_joints, half_m)
+
     def with_prefix(self, prefix: str) -> GripperModel:
         """Return it with `prefix` before its link and joint names."""
         return replace(
@@ -65,6 +70,12 @@ class TurningFingers(Mechanism, frozen=True, kw_only=True):
     def link_names(self) -> tuple[str, ...]:
         """Return the fingers and the links of the pads."""
         return (*self.finger_links, *(pad.link for pad in self.pads))
+
+    def joints_at(self, opening_m: float) -> dict[str, float]:
+        """Return driver and followers at an opening, or at the nearest possible one, in proportion to the opening."""
+        closed = 1.0 - min(max(0.0, opening_m), self.max_width_m) / self.max_width_m
+        driver_rad = self.open_rad + closed * (self.closed_rad - self.open_rad)
+        return {self.driver: driver_rad, **{joint: factor * driver_rad for joint, factor in self.followers.items()}}
 
     def with_prefix(self, prefix: str) -> TurningFingers:
         """Return it with `prefix` before its link and joint names."""

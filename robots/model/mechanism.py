@@ -50,6 +50,10 @@ class Mechanism(StrictModel, frozen=True, kw_only=True, tag_field="kind"):
         """Return the links that it names."""
         return ()
 
+    def joints_at(self, opening_m: float) -> dict[str, float]:
+        """Return its joints (metres or radians) at an opening of its fingers; empty for a mechanism without fingers."""
+        return {}
+
     def with_prefix(self, prefix: str) -> Self:
         """Return it with `prefix` before its link and joint names."""
         raise NotImplementedError

@@ -134,8 +134,16 @@ class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
 PlanAnswer = PathPlan | PlanRefusal
 
 
+ToolContact = Literal["never", "at_end", "ends_path", "along_path"]
+"""Where the tool, and what it holds, may touch fixtures and parts; see `motion_check`."""
+
+
 class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_path_check"):
-    """Asks whether an arm that follows `trajectory` collides from `from_s` of the trajectory's own time on."""
+    """Asks whether an arm that follows `trajectory` collides from `from_s` of the trajectory's own time on.
+
+    A trajectory that was not planned has its `tool_contact`, and what touches at its start may stay in contact; a
+    planned one has neither.
+    """
 
     scene: PlanningScene
     arm: str
@@ -143,6 +151,7 @@ class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_path_
     from_s: float
     occupancy: OccupancyGrid | None = None
     margin_m: float = 0.0
+    tool_contact: ToolContact | None = None
 
 
 class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_attached_part_check"):

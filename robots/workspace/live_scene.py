@@ -66,6 +66,11 @@ class LiveScene:
         """Number of arms."""
         return len(self._base.arms)
 
+    @property
+    def part_names(self) -> frozenset[str]:
+        """Names of the parts, whose poses are measured."""
+        return self._parts
+
     def refresh(self) -> frozenset[str]:
         """Apply new measurements; return the names of parts, held parts and arms that have changed."""
         measured = self._look()

@@ -27,10 +27,10 @@ from engine.skills.planning_scene import (
     ReadPlanningScene,
     RemoveObstacle,
 )
-from robots.planning.request import CollisionRequest
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 from robots.port import GraspCommand
 from robots.vision.occupancy.occupancy_source import OccupancySource
+from robots.workspace.collision_reports import collision_report
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
 from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices
@@ -133,6 +133,11 @@ class Workspace:
     def shared(self) -> bool:
         """True if the cell has more than one arm."""
         return self._scene().arms > 1
+
+    @property
+    def part_names(self) -> frozenset[str]:
+        """Names of the parts of the cell; await `ready` first."""
+        return self._scene().part_names
 
     def scene_for(self, arm: str) -> PlanningScene:
         """Return the current scene for `arm`; await `ready` first."""
@@ -377,13 +382,8 @@ class Workspace:
         await self.ready()
         live = self._scene()
         self._refresh(live)
-        scene = live.whole()
         try:
-            arm = scene.arm(request.robot)
-            joints = request.joints or arm.joints_rad
-            return await self.planners.look(
-                CollisionRequest(scene=scene, arm=arm.name, joints_rad=joints, occupancy=self.occupancy)
-            )
+            return await collision_report(self.planners, live.whole(), request, occupancy=self.occupancy)
         except FlexcellError as error:
             raise SkillFailed(error.message, where="cell", hint=error.hint) from error
 

@@ -19,6 +19,10 @@ from states.motion.move_free import MoveFree
 from states.scene.scene_parameter_types import CELL
 
 _ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
+OPENING_STEPS_M = (0.0, 0.015, 0.03, 0.06, 1.0)
+"""Steps of the sweep of fingers that open or close; beyond the widest opening they stay there. Narrower than a
+held part they are inside of it, where nothing else is."""
+
 _MAX_CONFIGURATIONS = 8
 """Maximum number of arm configurations tried per pose."""
 _REPORTED_DEPTH_M = 0.001
@@ -32,7 +36,9 @@ class Approach:
     """Parameters of an approach to a pose and of the retreat from it.
 
     `out_m` is the vector in the world from the pose to the pre-approach position, `onward_m` to the position of the
-    arm afterwards. `expected` returns whether a pair may touch at the pose; `kind` is the state's name in causes.
+    arm afterwards. `expected` returns whether a pair may touch at the pose, `may_touch` names what the arm may touch
+    on the lines, `openings_m` are those that the fingers pass through at the pose; `kind` is the state's name in
+    causes.
     """
 
     robot: str
@@ -43,6 +49,8 @@ class Approach:
     margin_m: Margin
     patience_s: BlockedPathTimeout
     expected: Callable[[TouchingPair], bool]
+    may_touch: tuple[str, ...]
+    openings_m: tuple[float, ...]
     kind: str
 
     async def to(
@@ -70,7 +78,9 @@ class Approach:
 
     async def straight_to(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Move on a straight line to a pose."""
-        return await move_along_line(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
+        return await move_along_line(
+            ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind, may_touch=self.may_touch
+        )
 
     async def straight_out(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Move on a straight line from `pose` back to its pre-approach position."""
@@ -102,7 +112,8 @@ class Approach:
     async def _pre_approach_joints(
         self, ctx: Context, pose: Pose, joints: tuple[float, ...]
     ) -> tuple[float, ...] | SequenceEnd:
-        report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
+        check = CheckCollision(robot=self.robot, joints=joints, openings_m=self.openings_m)
+        report = await ctx.call(check, to=CELL)
         pairs = [_describe_pair(pair) for pair in report.touching if not self.expected(pair)]
         if pairs:
             message = f"at the target, {', '.join(pairs)} would touch"

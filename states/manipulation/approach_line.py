@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import offset_along, rotate_vector
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context, goal_cause, is_path_blocked
 from states.manipulation.step_sequence import SequenceEnd
@@ -39,13 +40,20 @@ def retreat_vector(tool: Pose, frame: Pose, direction: Vector3 | None, distance_
     return offset_along(out, distance_m)
 
 
-async def move_along_line(ctx: Context, robot: str, pose: Pose, *, speed_m_s: float, kind: str) -> SequenceEnd | None:
+async def move_along_line(
+    ctx: Context, robot: str, pose: Pose, *, speed_m_s: float, kind: str, may_touch: tuple[str, ...] = ()
+) -> SequenceEnd | None:
     """Move the tool on a straight line; None on success.
 
-    `blocked` if the held part would touch something before the end of the line.
+    `blocked` if the arm, or the part that it holds, would touch something else than `may_touch` before the end of the
+    line.
     """
     start = await ctx.call(ForwardKinematics(), to=robot)
-    goal = CartLinTask(pose=pose, duration_s=line_duration_s(start, pose, speed_m_s=speed_m_s))
+    goal = CartLinTask(
+        pose=pose,
+        duration_s=line_duration_s(start, pose, speed_m_s=speed_m_s),
+        collisions=CollisionOptions(may_touch=may_touch),
+    )
     end = await ctx.perform(goal, to=robot)
     if end.status == "succeeded":
         return None

@@ -20,7 +20,7 @@ from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
 from states.gripper.grasp import Force
 from states.hand.hand_parameter_types import Percent
-from states.manipulation.approach import Approach
+from states.manipulation.approach import OPENING_STEPS_M, Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
 from states.manipulation.tool_states import (
@@ -151,8 +151,16 @@ class PickPart(State, frozen=True, kw_only=True):
             margin_m=self.margin_m,
             patience_s=self.patience_s,
             expected=self._may_touch,
+            may_touch=(self.part,),
+            openings_m=self._openings_m(),
             kind=self.state_name,
         )
+
+    def _openings_m(self) -> tuple[float, ...]:
+        """Return openings of the fingers from that of the part to the widest; none of a tool without an opening."""
+        if self.tool != "gripper" or self.width_m is None:
+            return ()
+        return tuple(self.width_m + step_m for step_m in OPENING_STEPS_M)
 
     def _may_touch(self, pair: TouchingPair) -> bool:
         return self.part in (pair.first, pair.second)

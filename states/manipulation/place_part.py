@@ -15,7 +15,7 @@ from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
-from states.manipulation.approach import Approach
+from states.manipulation.approach import OPENING_STEPS_M, Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
 from states.manipulation.tool_states import ToolName, check_held_state, release_state, require_tool, tool_resource
@@ -109,6 +109,8 @@ class PlacePart(State, frozen=True, kw_only=True):
             margin_m=self.margin_m,
             patience_s=self.patience_s,
             expected=self._is_support_contact,
+            may_touch=(self.part,),
+            openings_m=OPENING_STEPS_M if self.tool == "gripper" else (),
             kind=self.state_name,
         )
 

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import CartDMP
 from engine.skills.motion import CartTrapVel
 from engine.state import Context, Outcome, State, goal_cause
@@ -29,6 +30,7 @@ class FollowCartDmp(State, frozen=True, kw_only=True):
     goal_offset_m: Offset = NO_OFFSET
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
+    collisions: PathCollisions = CollisionOptions()
 
     def __post_init__(self) -> None:
         if self.goal is None and self.goal_offset_m != NO_OFFSET:
@@ -43,13 +45,13 @@ class FollowCartDmp(State, frozen=True, kw_only=True):
         dmp = await resolve_cart_dmp(ctx, self.dmp, time_scale=self.time_scale)
         target = None if self.goal is None else await resolve_pose(ctx, self.goal, self.goal_offset_m)
         if self.approach_speed is not None:
-            approach = CartTrapVel(pose=dmp.start, speed=self.approach_speed)
+            approach = CartTrapVel(pose=dmp.start, speed=self.approach_speed, collisions=self.collisions)
             end = await ctx.perform(approach, to=self.robot)
             if end.status != "succeeded":
                 what = f"{self.robot} did not reach the start of cart_dmp entry {self.dmp.entry}"
                 cause = goal_cause(what, approach, end, to=self.robot, where=ctx.path, kind=self.state_name)
                 return Outcome("failed", cause=cause)
-        goal = CartDMP(dmp=dmp, goal=target)
+        goal = CartDMP(dmp=dmp, goal=target, collisions=self.collisions)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import JointDMP
 from engine.skills.motion import JointTrapVel
 from engine.state import Context, Outcome, State, goal_cause
@@ -28,6 +29,7 @@ class FollowJointDmp(State, frozen=True, kw_only=True):
     goal: Annotated[JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`")] = None
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -38,13 +40,13 @@ class FollowJointDmp(State, frozen=True, kw_only=True):
         dmp = await resolve_joint_dmp(ctx, self.dmp, time_scale=self.time_scale)
         target = () if self.goal is None else await resolve_joints(ctx, self.goal)
         if self.approach_speed is not None:
-            approach = JointTrapVel(joints=dmp.start, speed=self.approach_speed)
+            approach = JointTrapVel(joints=dmp.start, speed=self.approach_speed, collisions=self.collisions)
             end = await ctx.perform(approach, to=self.robot)
             if end.status != "succeeded":
                 what = f"{self.robot} did not reach the start of dmp entry {self.dmp.entry}"
                 cause = goal_cause(what, approach, end, to=self.robot, where=ctx.path, kind=self.state_name)
                 return Outcome("failed", cause=cause)
-        goal = JointDMP(dmp=dmp, goal=target)
+        goal = JointDMP(dmp=dmp, goal=target, collisions=self.collisions)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")

@@ -9,6 +9,7 @@ from msgspec import Meta
 
 from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import JointDMP, LearnJointDmp
 from engine.skills.motion import JointTrapVel
 from engine.state import Context, Outcome, State, goal_cause
@@ -30,6 +31,7 @@ class FollowRecording(State, frozen=True, kw_only=True):
     recording: Annotated[RecordingEntry, Meta(description="`{entry: name}` of kind `trajectory`")]
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -44,11 +46,12 @@ class FollowRecording(State, frozen=True, kw_only=True):
             what = f"no movement primitive was learned from trajectory entry {name}"
             return Outcome("failed", cause=wrap_cause(what, cause_of(error), where=ctx.path, kind=self.state_name))
         dmp = msgspec.structs.replace(learned.dmp, tau=learned.dmp.tau * self.time_scale)
+        follow = JointDMP(dmp=dmp, collisions=self.collisions)
         goals: list[tuple[str, JointTrapVel | JointDMP]] = [
-            (f"{self.robot} did not follow trajectory entry {name} to its end", JointDMP(dmp=dmp))
+            (f"{self.robot} did not follow trajectory entry {name} to its end", follow)
         ]
         if self.approach_speed is not None:
-            approach = JointTrapVel(joints=dmp.start, speed=self.approach_speed)
+            approach = JointTrapVel(joints=dmp.start, speed=self.approach_speed, collisions=self.collisions)
             goals.insert(0, (f"{self.robot} did not reach the start of trajectory entry {name}", approach))
         for what, goal in goals:
             end = await ctx.perform(goal, to=self.robot)

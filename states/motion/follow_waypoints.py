@@ -9,6 +9,7 @@ from msgspec import Meta
 from engine.errors import StateError
 from engine.skills import waypoints
 from engine.skills.arm_target import ArmTarget, StoredTargets
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.waypoints import MOST_WAYPOINTS, BlendDistance, ToolSpeed, Waypoint, WaypointsResult
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
@@ -41,6 +42,7 @@ class FollowWaypoints(State, frozen=True, kw_only=True):
     speed: Speed = 0.5
     speed_m_s: Annotated[ToolSpeed | None, Meta(description="Maximum speed of the tool centre point, if any")] = None
     match: PoseMatch = "pose"
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -86,5 +88,9 @@ class FollowWaypoints(State, frozen=True, kw_only=True):
 
     def _goal(self, through: tuple[Waypoint, ...]) -> waypoints.FollowWaypoints:
         return waypoints.FollowWaypoints(
-            waypoints=through, speed=self.speed, speed_m_s=self.speed_m_s, match=self.match
+            waypoints=through,
+            speed=self.speed,
+            speed_m_s=self.speed_m_s,
+            match=self.match,
+            collisions=self.collisions,
         )

@@ -7,6 +7,7 @@ from typing import Any
 
 from engine.errors import StateError
 from engine.skill import Action
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionResult, JointMotionResult, JointTrapVel
 from engine.state import ActivationRecord, Context, goal_cause
 from states.goal_history import accepted_goals
@@ -39,7 +40,13 @@ def motion_undo_problem(done: ActivationRecord, goal: type[Action[Any, Any]]) ->
 
 
 async def move_joints_back(
-    ctx: Context, done: ActivationRecord, goal: type[Action[Any, Any]], *, robot: str, speed: float
+    ctx: Context,
+    done: ActivationRecord,
+    goal: type[Action[Any, Any]],
+    *,
+    robot: str,
+    speed: float,
+    collisions: CollisionOptions,
 ) -> None:
     """Move an arm in joint space to the start of the motions of an activation.
 
@@ -47,7 +54,8 @@ async def move_joints_back(
         StateError: the arm did not reach it; the cause is the device's.
     """
     for motion in finished_motions(done, goal):
-        await perform_undo_motion(ctx, JointTrapVel(joints=motion.start, speed=speed), robot=robot)
+        back = JointTrapVel(joints=motion.start, speed=speed, collisions=collisions)
+        await perform_undo_motion(ctx, back, robot=robot)
 
 
 async def perform_undo_motion(ctx: Context, goal: Action[Any, Any], *, robot: str) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from engine.skills.arm_target import ArmTarget, StoredTargets
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import JointTrapVel, Speed
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.motion.motion_target import JointTarget, RobotName, joints_label, resolve_joints
@@ -24,6 +25,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
     robot: RobotName
     target: Annotated[JointTarget, Meta(description="Joint angles in radians, or `{entry: name}`")]
     speed: Speed = 0.5
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -35,7 +37,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and return the outcome of its end."""
-        goal = JointTrapVel(joints=await resolve_joints(ctx, self.target), speed=self.speed)
+        goal = JointTrapVel(joints=await resolve_joints(ctx, self.target), speed=self.speed, collisions=self.collisions)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
@@ -49,4 +51,4 @@ class MoveJoints(State, frozen=True, kw_only=True):
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move back to the start configuration at the same speed."""
-        await move_joints_back(ctx, done, JointTrapVel, robot=self.robot, speed=self.speed)
+        await move_joints_back(ctx, done, JointTrapVel, robot=self.robot, speed=self.speed, collisions=self.collisions)

@@ -9,6 +9,7 @@ from msgspec import Meta
 from engine.errors import StateError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, StoredTargets
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import CartLinTask, CartMotionResult, ForwardKinematics
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.motion.line_duration import SHORTEST_S, line_duration_s
@@ -51,6 +52,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
         Annotated[float, Meta(gt=0, description="Maximum speed along the line", extra_json_schema={"unit": "m/s"})]
         | None
     ) = None
+    collisions: PathCollisions = CollisionOptions()
 
     def __post_init__(self) -> None:
         if (self.duration_s is None) == (self.speed_m_s is None):
@@ -90,9 +92,9 @@ class MoveLinear(State, frozen=True, kw_only=True):
         """Move back on a straight line to the start of the motion, in the same time."""
         for motion in finished_motions(done, CartLinTask):
             pose = await ctx.call(ForwardKinematics(joints=motion.start), to=self.robot)
-            await perform_undo_motion(
-                ctx, CartLinTask(pose=pose, duration_s=self._time_back_s(motion, pose)), robot=self.robot
-            )
+            time_s = self._time_back_s(motion, pose)
+            back = CartLinTask(pose=pose, duration_s=time_s, collisions=self.collisions)
+            await perform_undo_motion(ctx, back, robot=self.robot)
 
     def _time_back_s(self, motion: MotionResult, pose: Pose) -> float:
         """Return the duration of the line, measured or given; pauses do not count."""
@@ -108,7 +110,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
     async def _goal(self, ctx: Context) -> CartLinTask:
         if self.target is not None and self.duration_s is not None:
             pose = retracted_pose(await resolve_pose(ctx, self.target, self.offset_m), self.back_m)
-            return CartLinTask(pose=pose, duration_s=self.duration_s)
+            return CartLinTask(pose=pose, duration_s=self.duration_s, collisions=self.collisions)
         start = await ctx.call(ForwardKinematics(), to=self.robot)
         if self.target is not None:
             pose = await resolve_pose(ctx, self.target, self.offset_m)
@@ -118,7 +120,11 @@ class MoveLinear(State, frozen=True, kw_only=True):
                 pose = await ctx.call(ForwardKinematics(joints=await resolve_joints(ctx, self.joints)), to=self.robot)
             pose = offset_pose(pose, self.offset_m, where=ctx.path)
         pose = retracted_pose(pose, self.back_m)
-        return CartLinTask(pose=pose, duration_s=self.duration_s or self._travel_time_s(start, pose, ctx.path))
+        return CartLinTask(
+            pose=pose,
+            duration_s=self.duration_s or self._travel_time_s(start, pose, ctx.path),
+            collisions=self.collisions,
+        )
 
     def _travel_time_s(self, start: Pose, end: Pose, where: str) -> float:
         if start.frame != end.frame:

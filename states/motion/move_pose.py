@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from engine.skills.arm_target import ArmTarget, StoredTargets
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import CartTrapVel, PoseMatch, Speed
 from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
 from states.motion.motion_target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
@@ -30,6 +31,7 @@ class MovePose(State, frozen=True, kw_only=True):
     offset_m: Offset = NO_OFFSET
     speed: Speed = 0.5
     match: PoseMatch = "pose"
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -44,7 +46,7 @@ class MovePose(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and return the outcome of its end."""
         pose = await resolve_pose(ctx, self.target, self.offset_m)
-        goal = CartTrapVel(pose=pose, speed=self.speed, match=self.match)
+        goal = CartTrapVel(pose=pose, speed=self.speed, match=self.match, collisions=self.collisions)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
@@ -58,4 +60,4 @@ class MovePose(State, frozen=True, kw_only=True):
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move back to the start configuration at the same speed."""
-        await move_joints_back(ctx, done, CartTrapVel, robot=self.robot, speed=self.speed)
+        await move_joints_back(ctx, done, CartTrapVel, robot=self.robot, speed=self.speed, collisions=self.collisions)

@@ -12,6 +12,7 @@ from engine.errors import Cause
 from engine.messages import Vector3
 from engine.skills import contact
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.contact import (
     RIGID_N_M,
     ApproachSpeed,
@@ -47,6 +48,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     peak_n: PeakForce | None = None
     clear_m: ClearDistance = 0.0
     surface_n_m: SurfaceStiffness = RIGID_N_M
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -63,6 +65,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
             peak_n=self.peak_n,
             clear_m=self.clear_m,
             surface_n_m=self.surface_n_m,
+            collisions=self.collisions,
         )
         end = await ctx.perform(goal, to=self.robot)
         what = f"{self.robot} detected no contact within {self.distance_m:.3f} m"

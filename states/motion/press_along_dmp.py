@@ -11,6 +11,7 @@ from msgspec import Meta
 from engine.errors import EntryNotFound
 from engine.messages import Vector3
 from engine.messages.primitives import CartOffsets, ForceReference
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import CartAdmitDMP, Compliance
 from engine.skills.entries import ReadEntry, WriteEntry
 from engine.skills.motion import CartTrapVel
@@ -61,6 +62,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     ] = ""
     time_scale: TimeScale = 1.0
     approach_speed: ApproachSpeed = None
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -70,7 +72,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
         """Move to the start if `approach_speed` is given, press along the primitive, and store the learned offsets."""
         goal = await self._goal(ctx)
         if self.approach_speed is not None:
-            approach = CartTrapVel(pose=goal.dmp.start, speed=self.approach_speed)
+            approach = CartTrapVel(pose=goal.dmp.start, speed=self.approach_speed, collisions=self.collisions)
             end = await ctx.perform(approach, to=self.robot)
             if end.status != "succeeded":
                 what = f"{self.robot} did not reach the start of cart_dmp entry {self.dmp.entry}"
@@ -97,6 +99,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
             force=ForceReference.constant(force_n=self.force_n, torque_nm=self.torque_nm),
             compliance=self.compliance,
             slow_per_n=self.slow_per_n,
+            collisions=self.collisions,
         )
 
     async def _offsets(self, ctx: Context) -> CartOffsets | None:

@@ -20,11 +20,11 @@ from engine.skills.arm_control import ArmMode
 from robots.arm.execution.arm_planner import ArmPlanner
 from robots.arm.execution.tool_frames import WORLD, ToolFrames
 from robots.arm.execution.warm_up import WarmUp
-from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
+from robots.arm.scene_queries.path_guard import PathGuard
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
-from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, MotionReport, MotionStream, Tolerance
+from robots.port import ArmPort, Array, Motion, MotionEnd, MotionReport, MotionStream, Tolerance
 from robots.supervise_goal import supervise_goal
 
 T = TypeVar("T")
@@ -59,6 +59,7 @@ class MotionRunner:
         error: Why the last motion failed; empty if it did not.
         lost_reason: Why the device is not reachable; empty while it is.
         changed: Called after a change of any of these.
+        path_guard: Checks given paths in the planning scene; None without one.
     """
 
     def __init__(
@@ -70,14 +71,14 @@ class MotionRunner:
         port: ArmPort,
         clock: Clock,
         tolerance: Tolerance,
-        carry: AttachedPartGuard | None = None,
+        path_guard: PathGuard | None = None,
     ) -> None:
         self.name = name
         self.model = model
         self.port = port
         self.clock = clock
         self.tolerance = tolerance
-        self._carry = carry
+        self.path_guard = path_guard
         self._at_link = self._kinematics = ArmKinematics(model, base=base)
         self._tool: tuple[Vector3, Quaternion] = NO_FRAME
         self._planner = self._new_planner()
@@ -160,7 +161,7 @@ class MotionRunner:
         try:
             planned = await plan(self.port.sample().desired_rad)
         except PathBlocked as error:
-            raise GoalRejected("the attached part collides on this path", where=handle.address) from error
+            raise GoalRejected("the path is not free", where=handle.address) from error
         except RobotError as error:
             # The rejection carries the full message; chaining would only repeat it.
             raise GoalRejected(error.message, where=handle.address, hint=error.hint) from None
@@ -177,22 +178,6 @@ class MotionRunner:
             raise GoalRejected("the arm was stopped during planning", where=handle.address)
         self.accept(handle)
         return planned
-
-    async def planned_with_attached_parts(
-        self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[JointTrajectory]]
-    ) -> JointTrajectory:
-        """Plan a trajectory as `planned` does; reject the goal if an attached part collides on it.
-
-        Without a planning scene attached parts are unknown and not checked.
-        """
-
-        async def checked(start: Array) -> JointTrajectory:
-            trajectory = await plan(start)
-            if self._carry is not None:
-                await self._carry.require_free(trajectory)
-            return trajectory
-
-        return await self.planned(handle, checked)
 
     async def loaded(self) -> None:
         """Return when inverse kinematics answers without a loading delay; the status shows the wait."""

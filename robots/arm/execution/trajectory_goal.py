@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from engine.bus import ActiveGoal
 from engine.skills.arm_control import ArmMode
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.port import JointTrajectory, Motion
+
+Monitored = Callable[[Motion], Motion]
+"""Returns a motion of the port, monitored."""
+
+
+def _unmonitored(motion: Motion) -> Motion:
+    return motion
 
 
 async def follow_joints(
@@ -15,6 +24,7 @@ async def follow_joints(
     handle: ActiveGoal[JointMotionFeedback],
     *,
     mode: ArmMode = "moving",
+    monitored: Monitored = _unmonitored,
 ) -> JointMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured joints."""
     start = runner.set_point()
@@ -26,7 +36,7 @@ async def follow_joints(
         return JointMotionResult(joints=runner.measured(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
-        lambda: runner.port.follow(trajectory, tolerance=runner.tolerance),
+        lambda: monitored(runner.port.follow(trajectory, tolerance=runner.tolerance)),
         handle,
         publish_feedback,
         mode=mode,
@@ -41,6 +51,7 @@ async def follow_tool(
     handle: ActiveGoal[CartMotionFeedback],
     *,
     mode: ArmMode = "moving",
+    monitored: Monitored = _unmonitored,
 ) -> CartMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured pose of the tool."""
     start = runner.set_point()
@@ -49,7 +60,7 @@ async def follow_tool(
         return CartMotionResult(pose=runner.measured_pose(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
-        lambda: runner.port.follow(trajectory, tolerance=runner.tolerance),
+        lambda: monitored(runner.port.follow(trajectory, tolerance=runner.tolerance)),
         handle,
         lambda motion: publish_pose_feedback(runner, handle, motion),
         mode=mode,

@@ -9,7 +9,7 @@ from robots.workspace.unknown_space import describe_unknown
 from robots.workspace.workspace import LOOK_S, Workspace
 
 _LOOK_FIRST_S = 3.0
-_HINT = (
+UNKNOWN_SPACE_HINT = (
     "clear the view of the cameras, wait until they see it, choose another path, "
     "or set `unknown_space` of the cell's `occupancy`"
 )
@@ -67,4 +67,4 @@ class UnknownSpaceCheck:
         message = describe_unknown(
             swept, arm=self._arm, duration_s=trajectory.duration_s, statuses=self._workspace.camera_statuses
         )
-        return PlanRefusal(reason="unknown_space", message=message, hint=_HINT)
+        return PlanRefusal(reason="unknown_space", message=message, hint=UNKNOWN_SPACE_HINT)

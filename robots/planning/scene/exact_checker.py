@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -18,7 +18,7 @@ from robots.planning.scene.motion_bound import motion_bound
 from robots.planning.scene.pair_checks import PairChecks
 from robots.planning.scene.planning_scene import OCCUPANCY, AttachedPart, NamePair, PlanningScene
 from robots.planning.scene.shape_cache import CachedShape, cached_shape
-from robots.planning.scene.static_scene import ArmInScene, PlacedSolid, arm_in_scene, held_frame
+from robots.planning.scene.static_scene import ArmInScene, PlacedSolid, arm_in_scene, held_frame, tool_joint
 from robots.planning.scene.voxels import Voxels
 from robots.port import Array
 
@@ -88,6 +88,9 @@ class ExactChecker:
         candidates += self._attach(among.held)
         own = len(self._names)
         self._held = range(len(base.links), own)
+        at_tool = tool_joint(self.model, self._solver)
+        moves_along = [shape.parentJoint == at_tool for shape in self._geometry.geometryObjects]
+        self._at_tool = tuple(index for index in range(own) if moves_along[index] or index in self._held)
         candidates += self._add_obstacles(among.outside)
         allowed = allowed_collision_matrix(scene, self._names[:own], self._names)
         pairs = [pair for pair in candidates if not allowed[pair]]
@@ -140,10 +143,22 @@ class ExactChecker:
 
     def held_points(self, joints: Array) -> Array:
         """Return the corners of the bounding boxes of the held parts at `joints` (n,), shape (points, 3)."""
+        return self._corners(joints, self._held)
+
+    @property
+    def tool_bodies(self) -> frozenset[str]:
+        """The names of the links that move with the tool link, and of the parts attached to the arm."""
+        return frozenset(self._names[index] for index in self._at_tool)
+
+    def tool_points(self, joints: Array) -> Array:
+        """Return the corners of the bounding boxes of the tool bodies at `joints` (n,), shape (points, 3)."""
+        return self._corners(joints, self._at_tool)
+
+    def _corners(self, joints: Array, shapes: Iterable[int]) -> Array:
         data = self._solver.createData()
         pin.forwardKinematics(self._solver, data, joints)
         corners = [np.empty((0, 3))]
-        for index in self._held:
+        for index in shapes:
             shape = self._geometry.geometryObjects[index]
             at = data.oMi[shape.parentJoint] * shape.placement
             corners.append(corners_of(shape.geometry) @ at.rotation.T + at.translation)
@@ -179,6 +194,12 @@ class ExactChecker:
         if self._octree is None:
             self._octree = self._octree_checks(self._voxels)
         return self._checks, self._octree
+
+    def checks_along(self, rows: Array) -> tuple[PairChecks, ...]:
+        """Return the checks that apply at any of `rows` (k, n): `occupancy` only if the arm may be near it."""
+        if self._voxels is None or not any(self._may_meet(row) for row in rows):
+            return (self._checks,)
+        return self.checks
 
     def first_collision(
         self, path: Array, *, step_m: float | None = None, query: CollisionQuery | None = None

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from engine.errors import CellError
@@ -110,6 +111,26 @@ def held_frame(model: RobotModel, solver: Any, part: AttachedPart) -> Any:
     if not solver.existFrame(link):
         raise CellError(f"the arm has no link {link}", where=part.name, hint="name a link of the URDF")
     return solver.frames[solver.getFrameId(link)]
+
+
+def tool_joint(model: RobotModel, solver: Any) -> int:
+    """Return the number of the joint of Pinocchio's model of an arm with which the tool link moves."""
+    return int(solver.frames[solver.getFrameId(model.tool_link)].parentJoint)
+
+
+def with_tool_contact(
+    scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
+) -> PlanningScene:
+    """Return the scene in which the tool of an arm, and what it holds, may touch every obstacle."""
+    placed = scene.arm(arm)
+    model = robot(placed.placement)
+    shapes = arm_shapes(model, placed.tool_joints)
+    joint = tool_joint(model, shapes.solver)
+    links = zip(shapes.links, shapes.geometry.geometryObjects, strict=True)
+    bodies = [f"{arm}/{link}" for link, shape in links if shape.parentJoint == joint]
+    bodies += [part.name for part in scene.attached if part.arm == arm]
+    pairs = tuple((body, one.name) for body in dict.fromkeys(bodies) for one in scene.obstacles)
+    return msgspec.structs.replace(scene, allowed=(*scene.allowed, *pairs))
 
 
 def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]) -> list[PlacedSolid]:

@@ -17,6 +17,7 @@ from collections.abc import Callable
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.skills.planning_scene import CONTACT_M
 from robots.model.robot_model import RobotModel
@@ -28,6 +29,8 @@ from robots.planning.scene.static_scene import arm_in_scene
 from robots.planning.search.path_check import require_fit
 from robots.port import Array
 from robots.scene.sim_scene import ArmPlacement
+
+Flags = NDArray[np.bool_]
 
 _STEP_M, _FINE_M = 0.005, 0.0005
 """Largest motion of a held point between two checks, and the resolution of the start of the end section."""
@@ -50,9 +53,9 @@ def check_attached_parts(
     require_fit(trajectory, arm=request.arm, dof=checker.dof)
     rows = trajectory.position_rad
     checks = checker.checks[0]
-    moved_m = _moved(checker, rows)
-    end_row = _end_section_start(checker, rows, moved_m)
-    contacts = _Contacts(checks, supports=frozenset(one.name for one in scene.obstacles), start=rows[0])
+    moved_m = largest_motion_m(checker, rows)
+    end_row = end_section_start(checker.held_points, rows, moved_m)
+    contacts = AllowedContacts(checks, placed=placing_pairs(checks, scene), start=rows[0])
     # The row before the end section shows whether a contact precedes it.
     for row in sorted({*_rows_every(_STEP_M, moved_m), max(0, end_row - 1), len(rows) - 1}):
         touching = contacts.refused(rows[row], at_end=row >= end_row)
@@ -62,19 +65,30 @@ def check_attached_parts(
     return PathCheck(blocked_at_s=None, pairs=(), looked_s=trajectory.duration_s)
 
 
-class _Contacts:
+def placing_pairs(checks: PairChecks, scene: PlanningScene, *, bodies: frozenset[str] | None = None) -> Flags:
+    """Return which pairs are of one of `bodies`, or of any body, with an obstacle or a part that no arm holds."""
+    supports = frozenset(one.name for one in scene.obstacles)
+    return np.array(
+        [not supports.isdisjoint(pair) and (bodies is None or not bodies.isdisjoint(pair)) for pair in checks.pairs],
+        dtype=np.bool_,
+    )
+
+
+class AllowedContacts:
     """Finds forbidden contacts, configuration after configuration along a trajectory.
 
+    What touches at the start may go on touching, no deeper than there, until it has separated.
+
     Args:
-        checks: The pairs with a held part.
-        supports: Names of the objects on which it may be placed.
+        checks: The pairs.
+        placed: Which of them may touch at the end of the trajectory, up to `CONTACT_M` deep.
         start: The first configuration, (n,).
     """
 
-    def __init__(self, checks: PairChecks, *, supports: frozenset[str], start: Array) -> None:
+    def __init__(self, checks: PairChecks, *, placed: Flags, start: Array) -> None:
         self._checks = checks
         self._least_m = np.full(len(checks.pairs), TOUCHING_M)
-        self._supported = np.array([not supports.isdisjoint(pair) for pair in checks.pairs], dtype=np.bool_)
+        self._placed = placed
         self._resting = np.zeros(len(checks.pairs), dtype=np.bool_)
         if checks.in_collision(start):
             distances = checks.distances(start)
@@ -85,17 +99,26 @@ class _Contacts:
             )
             self._least_m[self._resting] = deepest[self._resting]
 
+    @property
+    def resting(self) -> bool:
+        """Whether something that touches at the start still touches."""
+        return bool(self._resting.any())
+
     def refused(self, joints: Array, *, at_end: bool) -> tuple[NamePair, ...]:
         """Return the names of the pairs, deepest first, that are nearer at `joints` (n,) than allowed."""
+        return tuple(dict.fromkeys(pair for pair, _ in self.too_near(joints, at_end=at_end)))
+
+    def too_near(self, joints: Array, *, at_end: bool) -> list[tuple[NamePair, bool]]:
+        """Return the pairs, deepest first, that are nearer at `joints` than allowed, and which of them are `placed`."""
         if not self._resting.any() and not self._checks.in_collision(joints):
-            return ()
+            return []
         distances = self._checks.distances(joints)
         separated = self._resting & (distances > _SLACK_M)
         self._resting &= ~separated
         self._least_m[separated] = TOUCHING_M
-        least = np.where(self._supported & at_end, np.minimum(self._least_m, -CONTACT_M), self._least_m)
+        least = np.where(self._placed & at_end, np.minimum(self._least_m, -CONTACT_M), self._least_m)
         deepest = np.argsort(distances, kind="stable")
-        return tuple(dict.fromkeys(self._checks.pairs[int(k)] for k in deepest if distances[k] < least[k]))
+        return [(self._checks.pairs[int(k)], bool(self._placed[k])) for k in deepest if distances[k] < least[k]]
 
 
 def _attached_parts_only(scene: PlanningScene, arm: str) -> PlanningScene:
@@ -105,18 +128,18 @@ def _attached_parts_only(scene: PlanningScene, arm: str) -> PlanningScene:
     return msgspec.structs.replace(scene, allowed=(*scene.allowed, *((arm, name) for name in names)))
 
 
-def _end_section_start(checker: ExactChecker, rows: Array, moved_m: Array) -> int:
-    """Return the first row of the end section, where all held points are within `CONTACT_M` of the end."""
-    final = checker.held_points(rows[-1])
+def end_section_start(points: Callable[[Array], Array], rows: Array, moved_m: Array) -> int:
+    """Return the first row of the end section, where all `points` (k, 3) are within `CONTACT_M` of their ends."""
+    final = points(rows[-1])
     later = len(rows) - 1
     for row in reversed(_rows_every(_FINE_M, moved_m)):
-        if float(np.linalg.norm(checker.held_points(rows[row]) - final, axis=1).max(initial=0.0)) > CONTACT_M:
+        if float(np.linalg.norm(points(rows[row]) - final, axis=1).max(initial=0.0)) > CONTACT_M:
             return later
         later = row
     return 0
 
 
-def _moved(checker: ExactChecker, rows: Array) -> Array:
+def largest_motion_m(checker: ExactChecker, rows: Array) -> Array:
     """Return an upper bound of the motion of any point of the arm and its parts up to each row, meters."""
     return np.concatenate(([0.0], np.cumsum(np.abs(np.diff(rows, axis=0)) @ checker.bound_m)))
 

@@ -6,6 +6,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -32,7 +33,7 @@ from robots.planning.request import (
 from robots.planning.scene.compiled_problem import FREE, CompiledProblem
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import PlanningScene
-from robots.planning.scene.static_scene import arm_in_scene
+from robots.planning.scene.static_scene import arm_in_scene, with_tool_contact
 from robots.planning.scene.voxels import VoxelCache
 from robots.planning.search.attached_part_check import check_attached_parts
 from robots.planning.search.endpoints import Endpoints, check_endpoints, validate_joints
@@ -45,6 +46,7 @@ from robots.planning.search.fast_search import (
     with_wider_gaps,
 )
 from robots.planning.search.kernels import blocked_at
+from robots.planning.search.motion_check import check_motion
 from robots.planning.search.ompl_search import ompl_search
 from robots.planning.search.path_check import SelfCollisionCache, check_path
 from robots.planning.search.path_validation import validate_path
@@ -73,19 +75,23 @@ _FAST_CHECK_S, _EXACT_CHECK_S = 2e-6, 1.5e-5
 
 @dataclass(frozen=True, kw_only=True)
 class PlanningContext:
-    """One arm in one scene, prepared for requests."""
+    """One arm in one scene, prepared for requests; its exact checker is made at its first use."""
 
-    checker: ExactChecker
+    make_checker: Callable[[], ExactChecker]
     problem: CompiledProblem
     names: ProblemNames
+
+    @cached_property
+    def checker(self) -> ExactChecker:
+        """Checks exactly."""
+        return self.make_checker()
 
 
 class ScenePlanner:
     """Answers requests one after the other; caches the contexts of the latest scenes.
 
     Args:
-        check_s: Seconds charged for a check if the budget counts work, so that answers do not depend on the
-            machine; None uses wall time.
+        check_s: Seconds charged for a check if the budget counts work, whatever the machine; None uses wall time.
     """
 
     def __init__(self, *, check_s: float | None = None) -> None:
@@ -136,8 +142,14 @@ class ScenePlanner:
         Raises:
             CellError: the scene has no such arm or is invalid, or the trajectory does not fit the arm.
         """
-        prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
-        return check_path(request, prepared.checker, prepared.problem, self._self_collision_cache)
+        scene = request.scene
+        if request.tool_contact == "along_path":
+            scene = with_tool_contact(scene, request.arm, robot=self._robot)
+        prepared = self.prepared(scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
+        known = self._self_collision_cache
+        if request.tool_contact is None:
+            return check_path(request, prepared.checker, prepared.problem, known)
+        return check_motion(request, lambda: prepared.checker, prepared.problem, known)
 
     def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
         """Return the first collision of an attached part on a trajectory; raises as `check_path` does."""
@@ -190,8 +202,11 @@ class ScenePlanner:
         if context is None:
             among = arm_in_scene(scene, arm, robot=self._robot)
             problem, names = compile_problem(scene, arm, margin_m=margin_m, among=among)
-            checker = ExactChecker(scene, arm, margin_m=margin_m, among=among)
-            context = PlanningContext(checker=checker, problem=problem, names=names)
+            context = PlanningContext(
+                make_checker=partial(ExactChecker, scene, arm, margin_m=margin_m, among=among),
+                problem=problem,
+                names=names,
+            )
             if not self._warm:
                 # Otherwise the first request would spend its budget on compilation.
                 warm_up(problem)
@@ -205,15 +220,17 @@ class ScenePlanner:
         problem, names = with_voxels(context.problem, context.names, scene, voxels, margin_m=margin_m)
         voxel_problem = voxels_alone(problem)
         # The spheres contain the arm: where they touch no voxel, the arm does not either.
-        checker = context.checker.seeing(voxels, may_meet=lambda joints: blocked_at(voxel_problem, joints[None]) >= 0)
-        return PlanningContext(checker=checker, problem=problem, names=names)
+
+        def seeing() -> ExactChecker:
+            return context.checker.seeing(voxels, may_meet=lambda joints: blocked_at(voxel_problem, joints[None]) >= 0)
+
+        return PlanningContext(make_checker=seeing, problem=problem, names=names)
 
     def _robot(self, placement: ArmPlacement) -> RobotModel:
         """Return the cached model of an arm: the arms of a cell do not change."""
-        model = self._models.get(placement)
-        if model is None:
-            model = self._models[placement] = placement.robot()
-        return model
+        if placement not in self._models:
+            self._models[placement] = placement.robot()
+        return self._models[placement]
 
 
 class _Attempt:

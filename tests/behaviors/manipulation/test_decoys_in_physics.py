@@ -64,6 +64,8 @@ def holding(tool: str, part: str, checked: str) -> str:
     _, pose, state, settings = TOOLS[tool]
     there = f"robot: arm, target: {{{pose}}}"
     above = "[-0.15, 0, 0.15]" if tool == "hand" else "[0, 0, 0.15]"
+    # On its direct path the soft hand brushes the pedestal with two fingers.
+    touched = "collisions: {may_touch: [pedestal, payload, decoy]}"
     return f"""
 flexcell: 1
 name: hold
@@ -75,11 +77,11 @@ root:
     states:
       above:
         state: motion.MovePose
-        with: {{{there}, offset_m: {above}}}
+        with: {{{there}, offset_m: {above}, {touched}}}
         transitions: {{reached: down, failed: failed}}
       down:
         state: motion.MoveLinear
-        with: {{{there}, speed_m_s: 0.1}}
+        with: {{{there}, speed_m_s: 0.1, {touched}}}
         transitions: {{reached: hold, failed: failed}}
       hold:
         state: {state}

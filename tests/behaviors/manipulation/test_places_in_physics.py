@@ -54,3 +54,11 @@ def test_a_part_is_put_onto_another_one(tmp_path: Path) -> None:
     higher = "region: {center_m: [0.11, -0.28], size_m: [0.02, 0.02], height_m: [0.06, 0.07]}"
     steps = PANDA_HAND.replace(FREE, "xyz: [0.11, -0.28, 0.065]").replace(THERE, higher)
     assert ended(run(tmp_path, CELL, steps)) == ("placed", "")
+
+
+def test_a_part_is_not_put_where_an_opening_finger_would_push_its_neighbour(tmp_path: Path) -> None:
+    """Part and closed fingers have room there; 62 mm from middle to middle is too near for a finger that opens."""
+    ran = run(tmp_path, CELL, PANDA_HAND.replace(FREE, "xyz: [0.11, -0.218, 0.0275]"))
+    assert ran.result.cause is not None
+    why = ran.result.cause.chain()[-1].message
+    assert (ran.outcome, "finger" in why, "hca_south" in why, went(ran)) == ("blocked", True, True, 2), ended(ran)

@@ -36,7 +36,7 @@ AT_CRATE = CollisionReport(
     touching=(TouchingPair(first="arm/finger", second="crate"),), distance_m=0.0, nearest=("", "")
 )
 IN_THE_WAY = Cause(
-    message="the attached part collides on this path",
+    message="the path is not free",
     where="arm/cart_lin_task",
     kind="GoalRejected",
     because=Cause(message="block would touch crate after 60% of the way", where="arm", kind="PathBlocked"),

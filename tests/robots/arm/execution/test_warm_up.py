@@ -24,11 +24,13 @@ import sys
 from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointTrapVel
 
 async def story():
     async with OpenCell(load_cell({str(CELL)!r})) as cell:
-        goal = JointTrapVel(joints=(0.1, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785), speed=1.0)
+        goal = JointTrapVel(joints=(0.1, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785), speed=1.0,
+                            collisions=CollisionOptions(avoid=False))
         return (await cell.bus.send_goal(goal, to="left").result()).status.value
 
 wanted = ("robots.model.inverse_kinematics.kernels", "eaik", "robots.planning.timing.topp_ra_kernels")
@@ -106,8 +108,8 @@ async def test_what_cannot_be_loaded_is_reported_by_the_goal_that_needs_it(
     assert "left: inverse kinematics cannot be loaded" in caplog.text
 
 
-def test_joint_motions_in_virtual_time_load_nothing_of_it() -> None:
-    """A run of joint motions needs not spend that time."""
+def test_joint_motions_that_are_not_checked_load_nothing_of_it_in_virtual_time() -> None:
+    """The check of a path loads the planner."""
     done = subprocess.run([sys.executable, "-P", "-c", IN_VIRTUAL_TIME], capture_output=True, text=True, check=True)
     assert done.stdout == "succeeded []\n"
 

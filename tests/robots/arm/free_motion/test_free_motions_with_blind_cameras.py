@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointTrapVel
 from engine.skills.simulated_world import CameraFault, SetCameraFault
 from tests.robots.workspace.free_cell import ACROSS, THERE, FreeCell, free, free_cell
@@ -22,8 +23,9 @@ async def give(opened: FreeCell, fault: CameraFault, *cameras: str) -> None:
 
 
 async def drive(opened: FreeCell, joints: tuple[float, ...]) -> str:
-    """Move without a planner until the arm touches something or is there; return what it touches."""
-    handle = opened.bus.send_goal(JointTrapVel(joints=joints, speed=0.3), to="left")
+    """Move blindly until the arm touches something or is there; return what it touches."""
+    blind = JointTrapVel(joints=joints, speed=0.3, collisions=CollisionOptions(avoid=False))
+    handle = opened.bus.send_goal(blind, to="left")
     await opened.until(lambda: bool(opened.touching()) or np.abs(opened.joints() - joints).max() < 0.01)
     touched = opened.touching()
     if touched:
@@ -52,7 +54,12 @@ async def test_with_both_cameras_covered_from_the_start_a_motion_is_refused_with
         ):
             assert words in text
         assert np.abs(opened.joints() - before).max() < 1e-3
-        # The refused motion leads into the crate.
+        # So is one that is not planned.
+        end = await opened.bus.send_goal(JointTrapVel(joints=ACROSS, speed=0.3), to="left").result()
+        assert end.status is GoalStatus.REJECTED
+        assert "l of unknown space in bench, first at (" in str(end.cause)
+        assert np.abs(opened.joints() - before).max() < 1e-3
+        # The refused motions lead into the crate.
         assert "crate" in await drive(opened, ACROSS)
 
 
@@ -87,3 +94,14 @@ async def test_an_arm_that_moves_brakes_when_a_camera_is_covered_and_goes_on_whe
         end = await handle.result()
         assert end.status is GoalStatus.SUCCEEDED, end.cause
         assert opened.touching() == ""
+
+
+@pytest.mark.virtual
+async def test_a_motion_that_is_not_planned_is_refused_where_the_cameras_see_the_crate(tmp_path: Path) -> None:
+    async with free_cell(tmp_path, cell=CELL) as opened:
+        assert await drive(opened, THERE) == ""
+        before = opened.joints()
+        end = await opened.bus.send_goal(JointTrapVel(joints=ACROSS, speed=0.3), to="left").result()
+        assert (end.status, opened.touching()) == (GoalStatus.REJECTED, "")
+        assert "would touch an obstacle seen by the cameras" in str(end.cause)
+        assert np.abs(opened.joints() - before).max() < 1e-3

@@ -1,0 +1,181 @@
+"""Guards one motion along a given path: it is admitted only on a free path, and monitored while it moves."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+
+from engine.errors import PathBlocked
+from engine.skills.collision_options import CollisionOptions
+from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
+from robots.arm.scene_queries.path_planner import describe_contacts
+from robots.arm.scene_queries.unknown_space_check import UNKNOWN_SPACE_HINT, UnknownSpaceCheck
+from robots.model.mechanics.kinematics import ArmKinematics
+from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
+from robots.planning.scene.planning_scene import NamePair, PlanningScene
+from robots.port import Array, JointTrajectory
+from robots.workspace.unknown_space import SLOW_SPEED
+from robots.workspace.workspace import Workspace
+
+# Parts this near to the tool at the start of a motion count as carried: fingers hold a part by its measured pose.
+_CARRIED_M = 0.002
+_MOVED_RAD = 1e-3
+_HINT = (
+    "choose another path or goal, plan one with `MoveFree`, or name what may be touched: "
+    "`collisions: {may_touch: [name]}`; `collisions: {avoid: false}` switches the check off"
+)
+_log = logging.getLogger("flexcell.arm")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathRules:
+    """The contacts that one motion may make: those of its kind, and those with the names in `may_touch`."""
+
+    tool_contact: ToolContact = "at_end"
+    may_touch: tuple[str, ...] = ()
+
+
+class PathGuard:
+    """Checks the given paths of one arm.
+
+    Args:
+        arm: Name of the arm.
+        workspace: Provides the scene, the occupancy and the planners.
+    """
+
+    def __init__(self, arm: str, workspace: Workspace) -> None:
+        self.arm = arm
+        self.workspace = workspace
+        self._attached = AttachedPartGuard(arm, workspace)
+        self._unknown_space = UnknownSpaceCheck(arm, workspace)
+
+    @asynccontextmanager
+    async def observed(self) -> AsyncGenerator[None]:
+        """Keep the cameras running meanwhile."""
+        self.workspace.require()
+        try:
+            yield
+        finally:
+            self.workspace.release()
+
+    async def admit(
+        self,
+        trajectory: JointTrajectory,
+        *,
+        options: CollisionOptions,
+        tool_contact: ToolContact,
+        kinematics: ArmKinematics,
+    ) -> PathRules:
+        """Return the rules by which the path is free now, and is to be checked during the motion.
+
+        Raises:
+            PathBlocked: a contact, or unknown space where the cell does not accept it; the message names both bodies
+                and the place.
+            RobotError: the planning process has ended, or the cameras do not work.
+            CellError: the scene is invalid.
+        """
+        workspace = self.workspace
+        await workspace.ready()
+        await workspace.fresh()
+        if tool_contact == "at_end":
+            # The scene allows contact of a part with what it was picked from, at any depth.
+            await self._attached.require_free(trajectory)
+        carried = await self._carried(trajectory.position_rad[0])
+        rules = PathRules(tool_contact=tool_contact, may_touch=(*options.may_touch, *carried))
+        check = await self.check(trajectory, rules, from_s=0.0)
+        if check.blocked_at_s is not None and not await self._moves_away(check.pairs):
+            raise PathBlocked(
+                f"{describe_contacts(check.pairs)} {_place(trajectory, check.blocked_at_s, kinematics)}",
+                where=self.arm,
+                hint=_HINT,
+            )
+        await self._through_known_space(trajectory, kinematics)
+        return rules
+
+    async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
+        """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
+        workspace = self.workspace
+        return await workspace.planners.check_path(
+            PathCheckRequest(
+                scene=self._allowing(workspace.scene_for(self.arm), rules.may_touch),
+                arm=self.arm,
+                trajectory=trajectory,
+                from_s=from_s,
+                occupancy=workspace.occupancy,
+                tool_contact=rules.tool_contact,
+            )
+        )
+
+    def is_other_arm(self, pairs: tuple[NamePair, ...]) -> bool:
+        """Return whether all contacts are with other arms, which may be gone when the arm gets there."""
+        arms = {arm.name for arm in self.workspace.scene_for(self.arm).arms} - {self.arm}
+        return bool(pairs) and all(any(name.partition("/")[0] in arms for name in pair) for pair in pairs)
+
+    def _allowing(self, scene: PlanningScene, names: tuple[str, ...]) -> PlanningScene:
+        if not names:
+            return scene
+        own = (self.arm, *(part.name for part in scene.attached if part.arm == self.arm))
+        pairs = tuple((body, name) for body in own for name in names if name != body)
+        return msgspec.structs.replace(scene, allowed=scene.allowed + pairs)
+
+    async def _carried(self, joints: Array) -> tuple[str, ...]:
+        """Return the parts that nobody has attached and that the arm touches at the start: they go with its tool."""
+        workspace = self.workspace
+        parts = workspace.part_names
+        scene = workspace.scene_for(self.arm)
+        if parts.isdisjoint(one.name for one in scene.obstacles):
+            return ()
+        report = await workspace.planners.look(
+            CollisionRequest(scene=scene, arm=self.arm, joints_rad=tuple(float(q) for q in joints), margin_m=_CARRIED_M)
+        )
+        touched = {name for pair in report.touching for name in (pair.first, pair.second)}
+        # A part that was detached may touch the links that still hold it.
+        own = f"{self.arm}/"
+        touched |= {name for pair in scene.allowed for name in pair if any(one.startswith(own) for one in pair)}
+        return tuple(sorted(touched & parts))
+
+    async def _moves_away(self, pairs: tuple[NamePair, ...]) -> bool:
+        """Return whether the path is blocked only by an arm that moves: monitoring then stops this one in time."""
+        if not self.is_other_arm(pairs):
+            return False
+        workspace = self.workspace
+        before = workspace.scene_for(self.arm)
+        await workspace.pause()
+        after = workspace.scene_for(self.arm)
+        names = {name.partition("/")[0] for pair in pairs for name in pair} - {self.arm}
+        known = {arm.name for arm in before.arms} & {arm.name for arm in after.arms}
+        return all(
+            name not in known
+            or np.abs(np.array(before.arm(name).joints_rad) - np.array(after.arm(name).joints_rad)).max(initial=0.0)
+            > _MOVED_RAD
+            for name in names
+        )
+
+    async def _through_known_space(self, trajectory: JointTrajectory, kinematics: ArmKinematics) -> None:
+        """Return if no unknown space is on the path, or if the cell accepts it there."""
+        policy, unknown = self.workspace.unknown_space.policy, self._unknown_space
+        swept = await (unknown.once_observed if policy == "look_first" else unknown.on)(trajectory)
+        if swept is None:
+            return
+        message = unknown.refusal(swept, trajectory).message
+        limits = np.array(kinematics.model.limits.velocity_rad_s)
+        if policy == "slow" and float((np.abs(trajectory.velocity_rad_s) / limits).max(initial=0.0)) <= SLOW_SPEED:
+            _log.info("%s: %s", self.arm, message)
+            return
+        slow = f"; at most {SLOW_SPEED:.0%} of the joint speed limits are accepted there" if policy == "slow" else ""
+        raise PathBlocked(message + slow, where=self.arm, hint=UNKNOWN_SPACE_HINT)
+
+
+def _place(trajectory: JointTrajectory, at_s: float, kinematics: ArmKinematics) -> str:
+    """Return where on a path the tool is at an instant: how far along it, and in the world."""
+    rows = trajectory.position_rad
+    row = min(round(at_s / trajectory.dt_s), len(rows) - 1)
+    share = at_s / trajectory.duration_s if trajectory.duration_s else 0.0
+    start, tool = kinematics.tool_pose(rows[0]).xyz, kinematics.tool_pose(rows[row]).xyz
+    at = ", ".join(f"{value:.2f}" for value in tool.tolist())
+    return f"after {share:.0%} of the path, {np.linalg.norm(tool - start):.2f} m from here, with the tool at ({at}) m"

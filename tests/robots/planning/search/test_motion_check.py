@@ -1,0 +1,105 @@
+"""A motion that was not planned is checked: what it is meant to touch is no collision, all else is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.messages.sensing import OccupancyGrid
+from engine.skills.planning_scene import CONTACT_M
+from robots.planning.request import PathCheck, PathCheckRequest, ToolContact
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.scene.planning_scene import PlanningScene
+from robots.planning.worker.scene_planner import ScenePlanner
+from robots.port import Array, JointTrajectory
+from tests.robots.planning.motion_oracle import MotionOracle
+from tests.robots.planning.search.test_path_check import ARM, HOME, PANDA, WALL, WAY, box, grid_of, line, turned
+
+PLANNER = ScenePlanner(check_s=2e-5)
+BENT = turned(3, -0.4)
+DOWN = line(HOME, BENT)
+"""The hand comes nearer to what is below it."""
+
+
+def check(
+    way: JointTrajectory,
+    *,
+    scene: PlanningScene = PANDA,
+    contact: ToolContact = "at_end",
+    from_s: float = 0.0,
+    occupancy: OccupancyGrid | None = None,
+) -> PathCheck:
+    return PLANNER.check_path(
+        PathCheckRequest(scene=scene, arm=ARM, trajectory=way, from_s=from_s, tool_contact=contact, occupancy=occupancy)
+    )
+
+
+def lowest(joints: Array) -> Array:
+    """Return the lowest corner of the tool."""
+    corners = ExactChecker(PANDA, ARM).tool_points(joints)
+    return corners[np.argmin(corners[:, 2])]
+
+
+def below(joints: Array, *, deep_m: float) -> PlanningScene:
+    """Return the scene with a plate that the tool touches at `joints`, so deep."""
+    x, y, z = lowest(joints).tolist()
+    return PANDA.with_obstacles(box("plate", (0.6, 0.6, 0.02), (x, y, z - 0.01 + deep_m)))
+
+
+def test_a_free_motion_is_free_to_its_end() -> None:
+    assert check(WAY) == PathCheck(blocked_at_s=None, pairs=(), looked_s=2.0)
+
+
+@pytest.mark.parametrize("contact", ["never", "at_end"])
+def test_what_is_on_the_path_blocks_where_mujoco_finds_the_contact(contact: ToolContact) -> None:
+    scene = PANDA.with_obstacles(WALL)
+    found = check(WAY, scene=scene, contact=contact)
+    assert found.blocked_at_s is not None
+    assert all("wall" in pair for pair in found.pairs)
+    oracle = MotionOracle(scene, ARM)
+    touched_s = next(k * WAY.dt_s for k, joints in enumerate(WAY.position_rad) if oracle.touches(joints))
+    assert found.blocked_at_s == pytest.approx(touched_s, abs=0.02)
+
+
+def test_the_tool_may_touch_at_the_end_and_no_deeper() -> None:
+    assert check(DOWN, scene=below(BENT, deep_m=0.003)).blocked_at_s is None
+    assert check(DOWN, scene=below(BENT, deep_m=0.003), contact="never").blocked_at_s is not None
+    blocked_s = check(DOWN, scene=below(BENT, deep_m=3 * CONTACT_M)).blocked_at_s
+    assert blocked_s is not None
+    assert blocked_s < DOWN.duration_s
+
+
+def test_a_contact_of_the_tool_ends_the_path_of_a_guarded_move_and_one_of_another_link_does_not() -> None:
+    found = check(DOWN, scene=below(BENT, deep_m=0.05), contact="ends_path")
+    assert found.blocked_at_s is None
+    assert found.looked_s < DOWN.duration_s
+    # The elbow swings into the wall first.
+    high = PANDA.with_obstacles(box("wall", (0.3, 0.05, 0.6), (0.25, 0.1, 0.65)))
+    elbow = check(WAY, scene=high, contact="ends_path")
+    assert elbow.blocked_at_s is not None
+    assert any("panda_link" in name for pair in elbow.pairs for name in pair)
+
+
+def test_a_tool_that_presses_may_touch_all_along_its_path() -> None:
+    scene = below(BENT, deep_m=0.05)
+    assert check(DOWN, scene=scene, contact="along_path").blocked_at_s is None
+    assert check(DOWN, scene=scene, contact="at_end").blocked_at_s is not None
+
+
+def test_what_touches_at_the_start_may_be_left_and_not_be_pressed() -> None:
+    scene = below(HOME, deep_m=0.002)
+    assert check(line(HOME, turned(3, 0.4)), scene=scene).blocked_at_s is None
+    assert check(DOWN, scene=scene).blocked_at_s is not None
+
+
+@pytest.mark.parametrize("contact", ["at_end", "ends_path", "along_path"])
+def test_what_the_cameras_see_is_never_meant(contact: ToolContact) -> None:
+    found = check(WAY, contact=contact, occupancy=grid_of(np.ones((5, 5, 5)), corner_m=(0.25, 0.0, 0.5)))
+    assert found.blocked_at_s is not None
+    assert "occupancy" in found.pairs[0]
+
+
+def test_only_what_is_still_to_come_counts() -> None:
+    scene = PANDA.with_obstacles(WALL)
+    assert check(WAY, scene=scene, from_s=WAY.duration_s - 0.05).blocked_at_s is None
+    assert check(WAY, scene=scene, from_s=0.2).blocked_at_s == check(WAY, scene=scene).blocked_at_s
