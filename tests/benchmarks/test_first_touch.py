@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.first_touch import PANDA, PEAK_N, PRESS_GAP_M, UR10, DESIRED_N, Subject, TouchRig
+from benchmarks.first_touch import DESIRED_N, PANDA, PEAK_N, PRESS_GAP_M, UR10, Subject, TouchRig
 from robots.port import MotionEnd
 from tests.tiers import nightly
 
