@@ -25,6 +25,7 @@ from engine.sweep import (
     SweepProgress,
     SweepResults,
     SweepSubject,
+    TrialResult,
     WorkerOptions,
     configurations,
     execute_sweep,
@@ -57,6 +58,8 @@ def application_sweep(behavior: str, realism: RealismName, seeds: int, *, time_s
         "behavior": str(BEHAVIORS / behavior),
         "factors": {"cell.world.realism": {"values": [realism]}},
         "runs": seeds,
+        # A busy machine must not end runs: the limit on the clock of the run ends those that hang.
+        "timeout": "2 h",
     }
     if time_s is not None:
         document["time"] = f"{max(1, round(time_s))} s"
@@ -69,12 +72,15 @@ def run_application(sweep: Sweep, saved: SweepResults, *, workers: int, execute:
     planned = configurations(sweep)
     if not execute:
         return saved_sweep(subject, planned, saved)
-    return execute_sweep(subject, planned, saved, WorkerOptions(workers=workers), show=_progress)
+    return execute_sweep(subject, planned, saved, WorkerOptions(workers=workers), again=True, show=_progress)
 
 
 def application_row(name: str, realism: RealismName, end: SweepEnd) -> str:
-    """Return the line of an application: how often it succeeded, with the interval, and what it pressed with."""
-    results = end.results
+    """Return the line of an application: how often it succeeded, with the interval, and what it pressed with.
+
+    The interval is that of `flexcell sweep`, which counts a process that was ended as a failure.
+    """
+    results = judged(end)
     if not results:
         return f"| {name} | {realism} | – | | | |"
     good = sum(each.success for each in results)
@@ -82,6 +88,11 @@ def application_row(name: str, realism: RealismName, end: SweepEnd) -> str:
     within = "" if rate is None else f"{rate.low:.1%} to {rate.high:.1%}"
     cells = [_most(end, measure) for measure in _MEASURES]
     return f"| {name} | {realism} | {good} of {len(results)} | {within} | {' | '.join(cells)} |"
+
+
+def judged(end: SweepEnd) -> list[TrialResult]:
+    """Return the results that tell something of the application: not those whose process was ended or crashed."""
+    return [each for each in end.results if each.status not in ("crashed", "hung")]
 
 
 def failure_rows(name: str, realism: RealismName, end: SweepEnd) -> list[str]:
@@ -172,7 +183,7 @@ def print_applications(options: argparse.Namespace, folder: Path, until_s: float
                 end = run_application(sweep, saved, workers=options.workers, execute=execute)
                 rows.append(application_row(name, realism, end))
                 failures += failure_rows(name, realism, end)
-                enough = enough and sum(each.success for each in end.results) >= 0.98 * len(end.results)
+                enough = enough and sum(each.success for each in judged(end)) >= 0.98 * len(judged(end))
     print("\n| application | realism | succeeded | success rate, 95 % at any time | most contact N | longest s |")
     print("|---|---|---:|---|---:|---:|\n" + "\n".join(rows))
     if failures:

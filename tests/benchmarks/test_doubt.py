@@ -64,6 +64,9 @@ def test_the_seeds_of_an_application_are_executed_once_and_failures_have_their_c
     end = replace(first, results=[failed])
     assert failure_rows("A4", "typical", end) == ["| A4 | typical | 0 | failed | it slipped |"]
     assert application_row("A4", "typical", end).startswith("| A4 | typical | 0 of 1 |")
+    hung = replace(first, results=[failed, msgspec.structs.replace(failed, status="hung", outcome=None)])
+    assert application_row("A4", "typical", hung).startswith("| A4 | typical | 0 of 1 |")
+    assert failure_rows("A4", "typical", hung)[-1] == "| A4 | typical | 0 | hung | it slipped |"
 
 
 def test_each_application_exists_and_its_seeds_are_its_own() -> None:
