@@ -16,7 +16,7 @@ AvoidCollisions = Annotated[
     bool, msgspec.Meta(description="Whether the path is checked for collisions before the motion and during it")
 ]
 MayTouch = Annotated[
-    tuple[str, ...],
+    tuple[Annotated[str, msgspec.Meta(extra_json_schema={"cell_name": "body"})], ...],
     msgspec.Meta(description="Names that the arm, and what it holds, may touch: parts, fixtures, other arms"),
 ]
 

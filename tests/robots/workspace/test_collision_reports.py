@@ -1,4 +1,4 @@
-"""The contacts of an arm are known with its fingers as they will be: what opening ones hit is reported beforehand."""
+"""The contacts of an arm are known with its fingers as they will be, before they open or close."""
 
 from __future__ import annotations
 
