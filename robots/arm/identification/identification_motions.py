@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected, RobotError, SkillFailed
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.identification import (
     FrictionEstimate,
     IdentificationFeedback,
@@ -17,6 +18,7 @@ from engine.skills.identification import (
     JointFrictionEstimate,
     PayloadEstimate,
 )
+from robots.arm.execution.given_path import given_path
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.identification.excitation import swing_joints, swing_wrist
 from robots.arm.identification.friction_regression import estimate_friction, moves
@@ -82,23 +84,25 @@ class IdentificationMotions:
         async def plan(start: Array) -> JointTrajectory:
             return excite(start)
 
-        trajectory = await runner.planned_with_attached_parts(handle, plan)
         samples = MotionSamples(runner, handle)
         sampling: list[asyncio.Task[None]] = []
-
-        def start() -> Motion:
-            sampling.append(asyncio.create_task(samples.run(), name=f"identification on {runner.name}"))
-            return runner.port.follow(trajectory, tolerance=runner.tolerance)
 
         def publish_feedback(motion: Motion) -> None:
             handle.feedback(IdentificationFeedback(joints=runner.measured(), progress=motion.progress))
 
-        try:
-            await runner.carry_out(start, handle, publish_feedback)
-        finally:
-            for task in sampling:
-                task.cancel()
-                await asyncio.wait((task,))
+        async with given_path(runner, CollisionOptions()) as path:
+            trajectory = await path.planned(handle, plan)
+
+            def start() -> Motion:
+                sampling.append(asyncio.create_task(samples.run(), name=f"identification on {runner.name}"))
+                return path.monitored(runner.port.follow(trajectory, tolerance=runner.tolerance))
+
+            try:
+                await runner.carry_out(start, handle, publish_feedback)
+            finally:
+                for task in sampling:
+                    task.cancel()
+                    await asyncio.wait((task,))
         return samples
 
     def _at_wrist(self, samples: MotionSamples) -> WristSamples:
