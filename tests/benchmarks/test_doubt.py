@@ -47,7 +47,7 @@ def test_a_figure_is_of_an_arm_with_this_realism() -> None:
     """Friction leaves more than a tenth of a milliradian at rest."""
     name = next(iter(doubt_motions.FIGURES))
     still = [float(doubt_motions.measure_figure(name, realism).split(" /")[0]) for realism in ("ideal", "typical")]
-    assert still[0] < 0.05 < 0.3 < still[1]
+    assert still[0] < 0.05 < 0.1 < still[1]
 
 
 @pytest.mark.virtual

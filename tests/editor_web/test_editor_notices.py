@@ -74,7 +74,9 @@ def test_notes_of_the_editor_are_accessible(browser: Browser, shop: Workshop) ->
         expect(page.get_by_text("Your unsaved changes of an earlier visit are here.")).to_be_visible()
         idle(page)
         page.keyboard.press("Control+Enter")
-        expect(page.get_by_role("alert")).to_contain_text("Run: there")
+        expect(page.get_by_role("alert")).to_contain_text(
+            "Run: the behavior is not finished. A container is empty: add a node to it."
+        )
         require_accessible(page, "a refusal beside a draft of an earlier visit")
         require_unique_names(page, "a refusal beside a draft of an earlier visit")
         page.keyboard.press("Control+z")

@@ -15,6 +15,7 @@ from engine.cell.open_cell import OpenCell
 from engine.document.cell import Cell, load_cell
 from engine.messages import JointState
 from engine.messages.separation import SeparationState
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointMotionFeedback, JointMotionResult, JointTrapVel
 from engine.skills.people import CountContacts, Reach
 from engine.skills.simulated_world import CameraFault, SetCameraFault
@@ -53,7 +54,9 @@ class SeparatedCell:
 
     def move(self, joints: tuple[float, ...]) -> Goal:
         """Start a motion that does not look out by itself."""
-        return self.bus.send_goal(JointTrapVel(joints=joints, speed=0.4), to="left")
+        return self.bus.send_goal(
+            JointTrapVel(joints=joints, speed=0.4, collisions=CollisionOptions(avoid=False)), to="left"
+        )
 
     async def until(self, condition: Callable[[], bool], *, within_s: float = 10.0) -> None:
         """Let time pass until a condition holds."""
