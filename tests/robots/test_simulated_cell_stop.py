@@ -121,6 +121,7 @@ async def test_a_handler_that_hangs_keeps_no_robot_from_coming_to_rest(tmp_path:
         assert max(speed_rad_s(cell.bus, name) for name in ("left", "right")) < REST_RAD_S
         assert [robot.status for robot in cell.robots.values()] == [DeviceStatus.READY] * 2
         assert [(await goal.result()).status for goal in (arm, fingers)] == [GoalStatus.CANCELED] * 2
+        await until(lambda: len(cell.bus.goals()) == 1)
         (hung,) = cell.bus.goals()
         assert (hung.address, hung.status) == ("left/hang", GoalStatus.CANCELING)
         server.let_go.set()
