@@ -114,8 +114,10 @@ def force_errors(task: ForceTask, record: ForceRecord) -> _Errors:
     error = np.zeros((len(record.shares()), len(axes)))
     for column, axis in enumerate(axes):
         error[:, column] = record.wrenches()[:, axis] - np.interp(record.shares(), known, task.wrench[:, axis])
-    sizes = np.linalg.norm(error, axis=1)
-    return _Errors(rms_n=float(np.sqrt((sizes**2).mean())), max_n=float(sizes.max()))
+    # Squares of any finite force are finite this way.
+    scale = max(1.0, float(np.abs(error).max()))
+    sizes = np.linalg.norm(error / scale, axis=1)
+    return _Errors(rms_n=scale * float(np.sqrt((sizes**2).mean())), max_n=scale * float(sizes.max()))
 
 
 def _given(goal: CartAdmitDMP) -> CartOffsets:

@@ -13,6 +13,7 @@ from engine.bus import GoalStatus, SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import JointState, Pose
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartLinTask, CartMotionFeedback, ForwardKinematics, JointTrapVel
 from tests.robots.panda_arm import home
 
@@ -78,7 +79,8 @@ async def test_a_hold_and_a_cancel_bring_the_measured_arm_to_rest(tmp_path: Path
 async def test_running_into_the_table_fails_and_names_it(tmp_path: Path) -> None:
     """The device's words travel up as the cause."""
     async with opened(tmp_path) as bus:
-        goal = CartLinTask(pose=Pose(xyz=(-0.243, 0.0, -0.12), xyzw=DOWN), duration_s=3.0)
+        pose = Pose(xyz=(-0.243, 0.0, -0.12), xyzw=DOWN)
+        goal = CartLinTask(pose=pose, duration_s=3.0, collisions=CollisionOptions(avoid=False))
         end = await bus.send_goal(goal, to="left").result()
         after = await bus.send_goal(JointTrapVel(joints=tuple(home()), speed=0.5), to="left").result()
     assert end.cause is not None
