@@ -3,7 +3,8 @@
 
 python3 bootstrap.py demo              the demo cell with its dashboard
 python3 bootstrap.py demo --headless   the demo behavior once, no browser
-python3 bootstrap.py test              everything that must pass
+python3 bootstrap.py test              what must pass before a change lands; of the costly tests a third, by commit
+python3 bootstrap.py test --all        all tests; with options of pytest, what these choose of them
 python3 bootstrap.py test --fast       what needs no browser, process or physics: a few minutes
 python3 bootstrap.py lock [--upgrade]  requirements/*.lock for what pyproject.toml asks for
 """
@@ -59,6 +60,8 @@ NODE_OPTIONS = "--max-semi-space-size=64"
 # Each process has a half of the files, one after the other, and takes from the other's where it is earlier at its end:
 # what the tests of a file share is made once, and none waits for the other.
 PYTEST = ["-m", "pytest", "-n", "2", "--dist", "worksteal", "-q"]
+# Docs and decision: docs/decisions/0079-costly-tests-take-turns.md
+TURNS = 3
 # The first has no windows of its own, whose pages cost as much as the one that is tested.
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
@@ -98,12 +101,32 @@ def test(options: list[str]) -> int:
         options = ["-m", "fast", *(option for option in options if option != "--fast")]
         _run_checks(CHECKS)
     else:
+        options = _chosen_tests(options)
         ensure_browser()
         ensure_graphics()
         # The type checker and the compiler of the kernels keep one processor busy each.
         with _beside([BIN / COMPILE_KERNELS[0], *COMPILE_KERNELS[1:]]):
             _run_checks({**CHECKS, **SLOW_CHECKS})
     return _become([PYTHON, *PYTEST, *options])
+
+
+def _chosen_tests(options: list[str]) -> list[str]:
+    """Return the options of pytest: those given, or the turn of the commit if there are none."""
+    if options:
+        return [option for option in options if option != "--all"]
+    turn = turn_of_commit()
+    _say(f"of the tests with browsers, processes or physics this is turn {turn}; `test --all` runs all")
+    return [f"--turn={turn}"]
+
+
+def turn_of_commit() -> str:
+    """Return which turn of the costly tests a checkout has: another one for each commit, the first without git."""
+    command = ["git", "rev-parse", "HEAD"]
+    try:
+        commit = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        commit = "0"
+    return f"{int(commit, 16) % TURNS + 1}/{TURNS}"
 
 
 def lock(options: list[str]) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import gc
 import inspect
@@ -18,6 +19,7 @@ from hypothesis import settings
 
 from engine.clock import run_virtual
 from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
+from tests.turns import Turn
 
 # Events of the interpreter when a process is started.
 PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
@@ -29,6 +31,9 @@ GLFW_VERSION = "def get_version(library_handle)"
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add what chooses how much is run."""
     parser.addoption("--nightly", action="store_true", help="more of the same: values marked `nightly`, examples")
+    parser.addoption(
+        "--turn", type=_turn, metavar="K/N", help="of what needs a browser, process or physics, the Kth of N shares"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -88,7 +93,17 @@ def pytest_collection_finish() -> None:
 
 def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:
     is_more = item.get_closest_marker("nightly") is not None or _is_in_the_dark(item)
-    return is_more and not config.getoption("--nightly")
+    if is_more and not config.getoption("--nightly"):
+        return True
+    turn: Turn | None = config.getoption("--turn")
+    return turn is not None and not turn.has(item.nodeid, item.path)
+
+
+def _turn(text: str) -> Turn:
+    try:
+        return Turn.parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _is_in_the_dark(item: pytest.Item) -> bool:
