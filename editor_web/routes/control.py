@@ -150,7 +150,7 @@ async def change(
 @interrupted_router.get("")
 async def list_interrupted(services: ServicesOf) -> tuple[InterruptedRun, ...]:
     """List the interrupted runs of the journal, oldest first."""
-    return services.backend.interrupted()
+    return await run_in_threadpool(services.backend.interrupted)
 
 
 @interrupted_router.post(

@@ -16,10 +16,9 @@ from engine.errors import JournalError
 from engine.event import Event, RunEnded
 from engine.host.sqlite_file import advice, open_sqlite
 from engine.host.sqlite_migrations import SqliteMigrations
-from engine.journal.batch import WriteBatch
+from engine.journal.batch import NewRun, WriteBatch
 from engine.journal.checksum import chain_start, checksum_of
 from engine.journal.event_block import EventBlock, new_blocks
-from engine.journal.journal_port import RunOrigin
 
 SCHEMA = SqliteMigrations(
     (
@@ -102,38 +101,6 @@ class JournalDatabase:
             raise journal_fault("cannot be opened", path, error) from error
         return cls(path, connection)
 
-    def insert_run(
-        self,
-        run_id: str,
-        *,
-        behavior: str,
-        document: str,
-        started_unix_s: float,
-        origin: RunOrigin | None,
-        engine: str,
-    ) -> int:
-        """Insert a run with status running, driven by `engine`; return its epoch."""
-        text = msgspec.json.encode(origin).decode() if origin is not None else None
-        origin_checksum = checksum_of((run_id, text)) if text is not None else None
-        with self._writing() as connection:
-            try:
-                connection.execute(
-                    "INSERT INTO run(id, behavior, hash, status, epoch, started) VALUES (?, ?, ?, 'running', 1, ?)",
-                    (run_id, behavior, document, started_unix_s),
-                )
-            except sqlite3.IntegrityError as error:
-                raise JournalError(f"run {run_id} already exists", where=self.path, hint="resume it") from error
-            if text is not None:
-                connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
-            connection.execute(_SET_DRIVER, (run_id, engine))
-            connection.execute(
-                "INSERT INTO checksum(run, since, seq, chain, origin) VALUES (?, 1, 0, ?, ?)",
-                (run_id, chain_start(run_id), origin_checksum),
-            )
-            self._seal(run_id)
-        self._ends[run_id] = _End(0, chain_start(run_id))
-        return 1
-
     def take_over_run(self, run_id: str, *, engine: str) -> int:
         """Make this engine the only writer of the run; return the new epoch."""
         with self._writing() as connection:
@@ -159,9 +126,11 @@ class JournalDatabase:
             RunRefused: one run must not write, or its events are out of order; nothing is written.
             JournalError: the file cannot be written; nothing is written.
         """
-        encoded = [(each, _blocks(each, self._ends[each.run])) for each in batches]
+        encoded = [(each, _blocks(each, self._end_before(each))) for each in batches]
         with self._writing():
             for each, blocks in encoded:
+                if each.new is not None:
+                    self._insert_run(each.run, each.epoch, each.new)
                 self._check_fence(each.run, each.epoch)
                 self._insert_blocks(each.run, blocks)
                 self._store_status(each.run, each.events)
@@ -169,10 +138,35 @@ class JournalDatabase:
         for each, blocks in encoded:
             if blocks:
                 self._ends[each.run] = _End(blocks[-1].last, blocks[-1].checksum)
+            elif each.new is not None:
+                self._ends[each.run] = self._end_before(each)
 
     def close(self) -> None:
         """Release the file."""
         self._connection.close()
+
+    def _end_before(self, batch: WriteBatch) -> _End:
+        return _End(0, chain_start(batch.run)) if batch.new is not None else self._ends[batch.run]
+
+    def _insert_run(self, run_id: str, epoch: int, new: NewRun) -> None:
+        """Insert a run with status running."""
+        text = msgspec.json.encode(new.origin).decode() if new.origin is not None else None
+        origin_checksum = checksum_of((run_id, text)) if text is not None else None
+        try:
+            self._connection.execute(
+                "INSERT INTO run(id, behavior, hash, status, epoch, started) VALUES (?, ?, ?, 'running', ?, ?)",
+                (run_id, new.behavior, new.document, epoch, new.started_unix_s),
+            )
+        except sqlite3.IntegrityError as error:
+            raise RunRefused(f"run {run_id} already exists", where=run_id, hint="resume it") from error
+        if text is not None:
+            self._connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
+        self._connection.execute(_SET_DRIVER, (run_id, new.engine))
+        self._connection.execute(
+            "INSERT INTO checksum(run, since, seq, chain, origin) VALUES (?, 1, 0, ?, ?)",
+            (run_id, chain_start(run_id), origin_checksum),
+        )
+        self._seal(run_id)
 
     def _check_fence(self, run: str, epoch: int) -> None:
         row = self._connection.execute("SELECT epoch FROM run WHERE id = ?", (run,)).fetchone()

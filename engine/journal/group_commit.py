@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from engine.errors import JournalError
 from engine.event import Event
-from engine.journal.batch import WorldState, WriteBatch
+from engine.journal.batch import NewRun, WorldState, WriteBatch
 from engine.journal.database import JournalDatabase, RunRefused
 
 WAKE_AT_EVENTS = 4096
@@ -24,7 +24,7 @@ WAKE_AFTER_S = 0.25
 
 @dataclass(eq=False)
 class RunWriteQueue:
-    """The pending events of one run and its write progress.
+    """The pending record and events of one run and its write progress.
 
     The run's loop appends to `events` and `worlds`, the writer takes from the other end: neither waits for the other.
     `failure` is set when an event is lost; nothing is written after that. `listener` is notified of it when no commit
@@ -33,9 +33,12 @@ class RunWriteQueue:
 
     run_id: str
     epoch: int
+    new: NewRun | None = None
+    """The record of a run that begins, until the writer has taken it."""
     events: list[Event] = field(default_factory=list[Event], repr=False)
     worlds: deque[WorldState] = field(default_factory=deque[WorldState], repr=False)
     appended: int = 0
+    """Number of events so far, and of records that begin the run."""
     durable: int = 0
     last_seq: int = 0
     failure: JournalError | None = None
@@ -44,6 +47,7 @@ class RunWriteQueue:
 
     def take(self) -> _Group:
         """Take all pending data; called by the writer."""
+        new, self.new = self.new, None
         world = None
         # Before the events: a world state must not be written without the events before it.
         while self.worlds:
@@ -51,7 +55,7 @@ class RunWriteQueue:
         # Two steps, each atomic for other threads; events appended in between stay for the next group.
         events = self.events[:]
         del self.events[: len(events)]
-        return _Group(events, world)
+        return _Group(events, world, new)
 
     def fail(self, error: JournalError) -> None:
         """Stop writing this run; the first error is kept."""
@@ -70,6 +74,16 @@ class RunWriteQueue:
 class _Group:
     events: list[Event]
     world: WorldState | None
+    new: NewRun | None
+
+    @property
+    def empty(self) -> bool:
+        return not self.events and self.world is None and self.new is None
+
+    @property
+    def counted(self) -> int:
+        """What `RunWriteQueue.durable` counts."""
+        return len(self.events) + (self.new is not None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +185,7 @@ class GroupCommitWriter:
             waiters = [item for item in items if isinstance(item, CommitWaiter)]
             taken = {each: each.take() for each in dict.fromkeys(map(_queue_of, items))}
             self._requeue(taken)
-            groups = {each: group for each, group in taken.items() if group.events or group.world is not None}
+            groups = {each: group for each, group in taken.items() if not group.empty}
             healthy = [each for each in groups if each.failure is None]
             try:
                 self._write(groups)
@@ -200,26 +214,30 @@ class GroupCommitWriter:
             self.flush()
 
     def _write(self, groups: dict[RunWriteQueue, _Group]) -> None:
-        while True:
-            ready = {write_queue: group for write_queue, group in groups.items() if write_queue.failure is None}
-            if not ready or self.failure is not None:
-                return
+        ready = {write_queue: group for write_queue, group in groups.items() if write_queue.failure is None}
+        while ready and self.failure is None:
             try:
                 self._database.store(
                     [
-                        WriteBatch(write_queue.run_id, write_queue.epoch, group.events, group.world)
+                        WriteBatch(write_queue.run_id, write_queue.epoch, group.events, group.world, group.new)
                         for write_queue, group in ready.items()
                     ]
                 )
             except RunRefused as error:
                 refused = next(write_queue for write_queue in ready if write_queue.run_id == error.where)
                 self._fail([refused], JournalError(error.message, where=self._database.path, hint=error.hint))
+                group = ready[refused]
+                # The events of a run that has begun are refused, not that it has.
+                if group.new is not None and group.events:
+                    ready[refused] = _Group([], None, group.new)
+                else:
+                    del ready[refused]
                 continue
             except JournalError as error:
                 self._fail(ready, error)
                 return
             for write_queue, group in ready.items():
-                write_queue.durable += len(group.events)
+                write_queue.durable += group.counted
             return
 
     def _fail(self, write_queues: Iterable[RunWriteQueue], error: JournalError) -> None:

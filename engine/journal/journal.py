@@ -10,7 +10,7 @@ from typing import Self
 
 from engine.errors import JournalError
 from engine.event import Event
-from engine.journal.batch import WorldState
+from engine.journal.batch import NewRun, WorldState
 from engine.journal.database import JournalDatabase, journal_fault
 from engine.journal.engine_presence import EnginePresence
 from engine.journal.group_commit import (
@@ -151,22 +151,32 @@ class Journal:
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
     ) -> SqliteRunJournal:
-        """Store a new run durably (one disk sync, on the calling thread) and return its journal.
+        """Have a new run stored, and return its journal.
+
+        With a writer thread nothing is waited for, since the event loop must not wait for a disk while arms move: the
+        next commit of the run returns once it is durable, or raises. Without one it is durable at the return.
 
         Raises:
-            JournalError: the run already exists, or the journal cannot be written.
+            JournalError: the run already exists, or the journal cannot be written; with a writer thread only if it is
+                known already.
         """
         self._refuse_unusable()
-        with self._writer.lock:
-            epoch = self._database.insert_run(
-                run_id,
-                behavior=behavior,
-                document=document,
-                started_unix_s=started_unix_s,
-                origin=origin,
-                engine=self._presence.engine,
-            )
-        return SqliteRunJournal(RunWriteQueue(run_id, epoch), self._writer, place=self.path)
+        new = NewRun(
+            behavior=behavior,
+            document=document,
+            started_unix_s=started_unix_s,
+            origin=origin,
+            engine=self._presence.engine,
+        )
+        write_queue = RunWriteQueue(run_id, epoch=1, new=new, appended=1)
+        self._writer.queue.append(write_queue)
+        if self._writer.threaded:
+            self._writer.wake()
+        else:
+            self._writer.flush(asking=write_queue)
+            if write_queue.failure is not None:
+                raise _again(write_queue.failure)
+        return SqliteRunJournal(write_queue, self._writer, place=self.path)
 
     def resume(self, run_id: str) -> SqliteRunJournal:
         """Take over an existing run: the engine that drove it before can no longer commit.

@@ -124,10 +124,13 @@ class JournalPort(Protocol):
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
     ) -> RunJournal:
-        """Store a new run durably and return its journal; `document` is the behavior's content hash.
+        """Have a new run stored, and return its journal; `document` is the behavior's content hash.
+
+        It is durable after the next commit of the run, or earlier. Never waits for a disk while an event loop runs that
+        others share.
 
         Raises:
-            JournalError: the run already exists, or the journal cannot be written.
+            JournalError: the run already exists, or the journal cannot be written; otherwise the next commit raises it.
         """
         ...
 

@@ -17,9 +17,9 @@ from engine.cell.open_cell import OpenCell
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.faults import Faults
-from engine.errors import ControlError
+from engine.errors import ControlError, JournalError
 from engine.faults import FaultPort
-from engine.journal import Journal, JournalPort, NullJournal, RunOrigin
+from engine.journal import Journal, JournalPort, NullJournal, RunJournal, RunOrigin
 from engine.project.resume_plan import ResumePlan, plan_again
 from engine.project.run_recorder import RunRecorder, RunStartRecord, open_recorder
 from engine.project.run_request import RunRequest
@@ -56,13 +56,27 @@ class CellSetup:
 
 @dataclass(frozen=True, kw_only=True)
 class PreparedRun:
-    """A run that is entered into its journal and recorded from its first event on, not yet executing."""
+    """A run that is being entered into its journal and is recorded from its first event on, not yet executing."""
 
     run: Run
     faults: FaultPort | None
     started_unix_s: float
     """The time of its start; of a resumed run that of its first start."""
+    journal: RunJournal
     end_recording: Callable[[], None] = lambda: None
+
+    async def entered(self) -> None:
+        """Return when its entry in the journal is on the disk.
+
+        Raises:
+            JournalError: it cannot be written; the run fails too.
+        """
+        try:
+            await self.journal.commit()
+        except JournalError as error:
+            # The journal tells whoever waits for it, and nobody else.
+            self.run.fail(error)
+            raise
 
     async def execute(self) -> RunResult:
         """Execute the run to its end; raises as `Run.execute` does."""
@@ -93,7 +107,7 @@ class CellRunner:
 
         Raises:
             DocumentError: a parameter or input is invalid; the journal has no entry of the run.
-            JournalError: the journal cannot be written.
+            JournalError: the journal is known not to be writable; otherwise `entered` of the run raises it.
             RobotError: the run commands devices, and a device of the cell is lost; the world cannot be restored.
         """
         started_unix_s = time.time()
@@ -126,7 +140,7 @@ class CellRunner:
             checkpoint=start.checkpoint if start is not None else None,
             world=self.cell.snapshot if self.cell.has_world and self._keeps_events else None,
         )
-        return self._prepared(run, faults, request, started_unix_s)
+        return self._prepared(run, entry, request, faults=faults, started_unix_s=started_unix_s)
 
     async def resume(
         self,
@@ -171,7 +185,7 @@ class CellRunner:
             world=self.cell.snapshot if self.cell.has_world else None,
         )
         request = RunRequest(plan=now.plan, inputs=origin.inputs, supervision=supervision, documents=documents)
-        prepared = self._prepared(run, None, request, resumed_unix_s)
+        prepared = self._prepared(run, entry, request, faults=None, started_unix_s=resumed_unix_s)
         return replace(prepared, started_unix_s=now.found.record.started_unix_s)
 
     @property
@@ -187,9 +201,11 @@ class CellRunner:
         bus = self.cell.bus
         return FaultPort(BusPort(bus), faults, clock=bus.clock, seed=seed) if faults is not None else None
 
-    def _prepared(self, run: Run, faults: FaultPort | None, request: RunRequest, started_unix_s: float) -> PreparedRun:
+    def _prepared(
+        self, run: Run, journal: RunJournal, request: RunRequest, *, faults: FaultPort | None, started_unix_s: float
+    ) -> PreparedRun:
         if self._recorder is None or request.documents is None:
-            return PreparedRun(run=run, faults=faults, started_unix_s=started_unix_s)
+            return PreparedRun(run=run, faults=faults, started_unix_s=started_unix_s, journal=journal)
         start = RunStartRecord(
             documents=request.documents,
             inputs=request.inputs,
@@ -197,7 +213,9 @@ class CellRunner:
             started_unix_s=started_unix_s,
         )
         end_recording = self._recorder.record(run, self.cell.bus, start)
-        return PreparedRun(run=run, faults=faults, started_unix_s=started_unix_s, end_recording=end_recording)
+        return PreparedRun(
+            run=run, faults=faults, started_unix_s=started_unix_s, journal=journal, end_recording=end_recording
+        )
 
     def _origin(
         self, request: RunRequest, parameters: dict[str, object], inputs: dict[str, object]

@@ -160,7 +160,8 @@ class Session:
             faults: Faults injected into this run only.
 
         Raises:
-            FlexcellError: the behavior has errors, a parameter is invalid, or the cell is stopped (ControlError).
+            FlexcellError: the behavior has errors, a parameter is invalid, the cell is stopped (ControlError), or the
+                journal cannot be written (JournalError); the run has then failed.
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         await asyncio.to_thread(self._library.require_fit, behavior_id)
@@ -170,7 +171,7 @@ class Session:
         watched = paused_before(plan, watched, until)
         start = None
         if begin is not None:
-            start = start_of(self._journal.path, begin, plan)
+            start = await asyncio.to_thread(start_of, self._journal.path, begin, plan)
             parameters = start.parameters(plan, parameters)
             start, inputs = start.with_userdata(plan, inputs or {}), {}
         if self.cell.document is not None:
@@ -188,7 +189,9 @@ class Session:
         await self._stops.require_released()
         prepared = await self._runner.start(request)
         self._stops.note_start(begin.run if begin is not None else None)
-        return self._add(behavior_id, prepared)
+        run_id = self._add(behavior_id, prepared)
+        await prepared.entered()
+        return run_id
 
     async def start_data(self, behavior_id: str, path: str) -> StartData:
         """Return the data with which a run of a behavior can start at a node: of the last run that entered it."""
@@ -208,7 +211,7 @@ class Session:
             ResumeDecisionRequired: states that were active require a decision.
             FlexcellError: the run cannot be resumed here.
         """
-        found = read_run(self._journal.path, run_id)
+        found = await asyncio.to_thread(read_run, self._journal.path, run_id)
         behavior_id = self._library.id_of(Path(found.origin.behavior))
         if found.origin.cell != self._cell_file():
             there = found.origin.cell or "no cell"

@@ -15,11 +15,11 @@ from tests.engine.journal.older_journal import write_older_journal
 
 ROOT = Path(__file__).parents[3]
 ENGINE = """
-import sys
+import asyncio, sys
 from engine.journal import Journal
 
 with Journal.open(sys.argv[1]) as journal:
-    journal.begin("abroad", behavior="b", document="d", started_unix_s=0.0)
+    asyncio.run(journal.begin("abroad", behavior="b", document="d", started_unix_s=0.0).commit())
     print("begun", flush=True)
     sys.stdin.read()
 """
@@ -28,7 +28,7 @@ with Journal.open(sys.argv[1]) as journal:
 async def test_a_run_is_driven_while_its_journal_is_open_and_interrupted_afterwards(tmp_path: Path) -> None:
     with Journal.open(tmp_path) as journal:
         ended = journal.begin("ended", behavior="b", document="d", started_unix_s=0.0)
-        journal.begin("open", behavior="b", document="d", started_unix_s=1.0)
+        await journal.begin("open", behavior="b", document="d", started_unix_s=1.0).commit()
         ended.append(RunEnded(seq=1, time_s=0.0, status="finished", outcome="done"))
         await ended.commit()
         assert [(run.driver, run.interrupted) for run in list_runs(tmp_path)] == [(None, False), (os.getpid(), False)]

@@ -246,7 +246,9 @@ async def test_an_event_whose_predecessor_is_missing_is_refused(tmp_path: Path, 
 async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path, inline: bool) -> None:
     """What lost events stays failed when the lock goes away; what lost none goes on, and the next run begins."""
     with Journal.open(tmp_path, inline=inline, busy_timeout_s=0.01) as journal:
-        run, other, idle = (begun(journal, f"run-{n}") for n in (1, 2, 3))
+        run, other, idle = runs = [begun(journal, f"run-{n}") for n in (1, 2, 3)]
+        for each in runs:
+            await each.commit()
         thief = sqlite3.connect(journal.path, isolation_level=None)
         thief.execute("BEGIN IMMEDIATE")
         run.append(logged(1))
@@ -255,9 +257,9 @@ async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path,
         ):
             await run.commit()
         with pytest.raises(JournalError, match="locked"):
-            begun(journal, "run-4")
+            await begun(journal, "run-4").commit()
         thief.close()
-        for run_journal in (run, other, idle):
+        for run_journal in runs:
             run_journal.append(logged(2 if run_journal is run else 1))
         await other.commit()
         await idle.commit()
@@ -315,12 +317,41 @@ async def test_a_defect_in_the_writer_reaches_the_waiting_commit(
                 await asyncio.wait_for(run.commit(), 30)
 
 
-def test_a_run_begins_once(tmp_path: Path) -> None:
-    """The same id again is refused and told to resume."""
+@BOTH
+async def test_a_run_begins_once(tmp_path: Path, inline: bool) -> None:
+    """The same id again is refused and told to resume; the first goes on, and so do others of the same group."""
+    with Journal.open(tmp_path, inline=inline) as journal:
+        first = begun(journal)
+        await first.commit()
+        other = begun(journal, "run-2")
+        with pytest.raises(JournalError, match=r"run run-1 already exists \(resume it\)"):
+            await begun(journal).commit()
+        first.append(logged(1))
+        await first.commit()
+        await other.commit()
+    assert [(record.id, record.last_seq) for record in list_runs(tmp_path)] == [("run-1", 1), ("run-2", 0)]
+
+
+async def test_a_run_begins_without_waiting_for_a_disk_that_is_slow(tmp_path: Path) -> None:
+    """The event loop goes on while another program holds the file, and with it what keeps arms moving."""
+    with Journal.open(tmp_path, busy_timeout_s=30.0) as journal:
+        thief = sqlite3.connect(journal.path, isolation_level=None)
+        thief.execute("BEGIN IMMEDIATE")
+        run = begun(journal)
+        entered = asyncio.create_task(run.commit())
+        await asyncio.sleep(0)
+        assert not entered.done()
+        assert list_runs(tmp_path) == ()
+        thief.close()
+        await entered
+        assert [record.id for record in list_runs(tmp_path)] == ["run-1"]
+
+
+async def test_a_run_that_is_closed_before_its_first_commit_has_begun(tmp_path: Path) -> None:
+    """Closing writes what is pending."""
     with Journal.open(tmp_path) as journal:
         begun(journal)
-        with pytest.raises(JournalError, match=r"run run-1 already exists \(resume it\)"):
-            begun(journal)
+    assert [(record.id, record.status) for record in list_runs(tmp_path)] == [("run-1", "running")]
 
 
 def test_an_unknown_run_cannot_be_resumed(tmp_path: Path) -> None:

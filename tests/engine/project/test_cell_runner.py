@@ -149,6 +149,7 @@ async def test_a_run_that_is_driven_here_is_not_resumed(outer: Path) -> None:
     with Journal.open(outer.parent) as journal:
         async with OpenCell(None) as cell:
             prepared = await CellRunner(cell, journal).start(RunRequest(plan=plan, parameters={"after": 0.0}))
+            await prepared.entered()
             found = read_run(outer.parent, prepared.run.id)
             with pytest.raises(ControlError, match=f"process {os.getpid()} executes this run"):
                 plan_resume(found, plan, catalogue=CATALOGUE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 import sys
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
@@ -12,7 +13,7 @@ import pytest
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.document.loader import BehaviorSurvey, survey_behavior
-from engine.errors import ControlError, DocumentError, FlexcellError
+from engine.errors import ControlError, DocumentError, FlexcellError, JournalError
 from engine.journal import Journal, list_runs
 from engine.library import behavior_library
 from engine.project.session import Session
@@ -161,10 +162,29 @@ async def test_breakpoints_are_kept_beside_the_file_and_used_when_asked_for(proj
     assert not (project / "behaviors" / "quick.breakpoints.yaml").exists()
 
 
+async def test_a_run_that_cannot_be_journaled_is_refused_with_the_reason_and_has_failed(project: Path) -> None:
+    """Its entry is written while the event loop goes on."""
+    with Journal.open(project / "journal", busy_timeout_s=0.01) as journal:
+        async with (
+            OpenCell(None) as cell,
+            Session(cell, project=project, catalogue=CATALOGUE, journal=journal) as session,
+        ):
+            thief = sqlite3.connect(journal.path, isolation_level=None)
+            thief.execute("BEGIN IMMEDIATE")
+            with pytest.raises(JournalError, match=r"the journal cannot be written: .*locked.*end that program"):
+                await session.start("behaviors/endless.yaml", parameters={}, seed=0)
+            (run,) = session.runs()
+            ended = await session.wait(run.id)
+            assert (ended.status, "locked" in ended.cause) == ("errored", True)
+            thief.close()
+
+
 async def test_everything_is_stopped_at_once(project: Path) -> None:
     """All runs end as stopped, for the reason given; runs start again once the stop is released."""
     async with _session(project) as session:
-        runs = [await session.start("behaviors/endless.yaml", parameters={}, seed=1) for _ in range(2)]
+        runs = [await session.start("behaviors/endless.yaml", parameters={}, seed=1)]
+        # It waits for long, and commands nothing that the other one does.
+        runs.append(await session.start("behaviors/quick.yaml", parameters={"pause": 100.0}, seed=1))
         await session.stop_all(reason="smoke")
         assert [(await session.wait(run)).status for run in runs] == ["stopped", "stopped"]
         with pytest.raises(ControlError, match="the cell is stopped"):
