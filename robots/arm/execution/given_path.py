@@ -10,6 +10,7 @@ import numpy as np
 
 from engine.bus import ActiveGoal
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.monitored_motion import MonitoredMotion
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.scene_queries.path_guard import PathGuard, PathRules
@@ -50,7 +51,7 @@ class GivenPath:
         return await self._runner.planned(handle, checked)
 
     def monitored(self, motion: Motion) -> Motion:
-        """Return the motion of the port, monitored on the path that was planned."""
+        """Return the motion of the port, monitored on the path that was planned, and reserved for this arm."""
         if self._guard is None or self._admitted is None:
             return motion
         trajectory, rules = self._admitted
@@ -61,6 +62,7 @@ class GivenPath:
             rules,
             guard=self._guard,
             options=self._options,
+            reservation=PathReservation(runner, self._guard.workspace, made=True),
             clock=runner.clock,
             acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
         )

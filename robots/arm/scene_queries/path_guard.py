@@ -19,6 +19,7 @@ from robots.model.mechanics.kinematics import ArmKinematics
 from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.workspace.path_reservations import is_reserved
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
 
@@ -112,9 +113,11 @@ class PathGuard:
         )
 
     def is_other_arm(self, pairs: tuple[NamePair, ...]) -> bool:
-        """Return whether all contacts are with other arms, which may be gone when the arm gets there."""
-        arms = {arm.name for arm in self.workspace.scene_for(self.arm).arms} - {self.arm}
-        return bool(pairs) and all(any(name.partition("/")[0] in arms for name in pair) for pair in pairs)
+        """Return whether all contacts are with other arms, or what they hold, which may be gone by then."""
+        scene = self.workspace.scene_for(self.arm)
+        others = {arm.name for arm in scene.arms} | {part.name for part in scene.attached if part.arm != self.arm}
+        others.discard(self.arm)
+        return bool(pairs) and all(any(name.partition("/")[0] in others for name in pair) for pair in pairs)
 
     def _allowing(self, scene: PlanningScene, names: tuple[str, ...]) -> PlanningScene:
         if not names:
@@ -147,13 +150,16 @@ class PathGuard:
         before = workspace.scene_for(self.arm)
         await workspace.pause()
         after = workspace.scene_for(self.arm)
-        names = {name.partition("/")[0] for pair in pairs for name in pair} - {self.arm}
+        holder = {part.name: part.arm for part in before.attached}
+        names = {name.partition("/")[0] for pair in pairs for name in pair}
+        # Only an arm that moves reserves its path.
+        arms = {holder.get(name, name) for name in names if not is_reserved(name)} - {self.arm}
         known = {arm.name for arm in before.arms} & {arm.name for arm in after.arms}
         return all(
             name not in known
             or np.abs(np.array(before.arm(name).joints_rad) - np.array(after.arm(name).joints_rad)).max(initial=0.0)
             > _MOVED_RAD
-            for name in names
+            for name in arms
         )
 
     async def _through_known_space(self, trajectory: JointTrajectory, kinematics: ArmKinematics) -> None:
