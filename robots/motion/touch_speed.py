@@ -41,7 +41,7 @@ def friction_push_n(kinematics: ArmKinematics, joints: Array, direction: Array) 
     """
     twist = np.concatenate((direction, np.zeros(3)))
     jacobian = kinematics.tool_pose_and_jacobian(joints)[1]
-    rates: Array = np.linalg.lstsq(jacobian, twist, rcond=None)[0]
+    rates = np.linalg.lstsq(jacobian, twist, rcond=None)[0]
     return float(np.array(kinematics.model.friction.coulomb_nm) @ np.abs(rates))
 
 
