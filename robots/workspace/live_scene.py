@@ -99,7 +99,11 @@ class LiveScene:
 
     def holds(self, arm: str) -> bool:
         """Return whether an arm held a part at the last measurement, attached or by contact."""
-        return any(one.part.arm == arm for one in self._held.values())
+        return bool(self.attached_to(arm))
+
+    def attached_to(self, arm: str) -> tuple[AttachedPart, ...]:
+        """Return the parts that an arm held at the last measurement."""
+        return tuple(one.part for one in self._held.values() if one.part.arm == arm)
 
     def lies(self, arm: str) -> bool:
         """Return whether a part held by an arm still touches the object that it was picked from."""

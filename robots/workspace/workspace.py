@@ -154,7 +154,7 @@ class Workspace:
 
     def attached_to(self, arm: str) -> tuple[AttachedPart, ...]:
         """Return the parts that an arm held at the last measurement."""
-        return tuple(part for part in (self._live.whole().attached if self._live else ()) if part.arm == arm)
+        return self._live.attached_to(arm) if self._live is not None else ()
 
     def lies(self, arm: str) -> bool:
         """Return whether a part held by an arm still touches what it was picked from; await `ready` first."""
