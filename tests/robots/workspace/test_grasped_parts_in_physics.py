@@ -19,7 +19,7 @@ from engine.skills.planning_scene import DetachPart, ReadPlanningScene
 from robots.model.transform import RigidTransform
 from tests.robots.workspace.free_cell import FreeCell, free_cell
 
-ONE_PANDA = Path(__file__).parents[1] / "one_panda.yaml"
+ONE_PANDA = Path(__file__).parents[1] / "arm" / "one_panda.yaml"
 DOWN = (1.0, 0.0, 0.0, 0.0)
 AT_BAR, ABOVE_BAR = (Pose(xyz=(-0.15, 0.2, z), xyzw=DOWN) for z in (0.028, 0.15))
 """The fingers around the middle of the bar."""
