@@ -26,7 +26,7 @@ from robots.model.transform import RigidTransform, quaternion_of
 from robots.motion import plan_line
 from robots.motion.min_jerk import PEAK_SPEED
 from robots.motion.speed_profile import MIN_JERK, plan_approach
-from robots.motion.touch_speed import effective_mass_kg, touch_speed_m_s
+from robots.motion.touch_speed import effective_mass_kg, friction_push_n, touch_speed_m_s
 from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
 from robots.sim.commands.arm_commands import FollowTrajectory, TrackForce
@@ -126,7 +126,9 @@ class TouchRig:
         profile, duration_s = MIN_JERK, PEAK_SPEED * distance_m / speed_m_s
         if peak_n is not None:
             mass_kg = effective_mass_kg(ArmDynamics(self._model), self.kinematics, joints, -np.array(UP))
-            touch_m_s = min(speed_m_s, touch_speed_m_s(mass_kg, peak_n=peak_n, surface_n_m=RIGID_N_M))
+            friction_n = friction_push_n(self.kinematics, joints, -np.array(UP))
+            allowed_m_s = touch_speed_m_s(mass_kg, peak_n=peak_n, surface_n_m=RIGID_N_M, friction_n=friction_n)
+            touch_m_s = min(speed_m_s, allowed_m_s)
             profile, duration_s = plan_approach(distance_m, clear_m=CLEAR_M, speed_m_s=speed_m_s, touch_m_s=touch_m_s)
         end = RigidTransform(xyz=here.xyz - distance_m * np.array(UP), xyzw=here.xyzw)
         trajectory = plan_line(self.kinematics, joints, end, duration_s=duration_s, profile=profile)

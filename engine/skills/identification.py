@@ -8,6 +8,7 @@ import msgspec
 
 from engine.messages import Message, Vector3
 from engine.skill import Action
+from engine.skills.collision_options import CollisionOptions
 
 PayloadAmplitude = Annotated[
     float,
@@ -71,18 +72,20 @@ class IdentifyPayload(Action[PayloadEstimate, IdentificationFeedback], frozen=Tr
     """Weigh what the tool carries: the last three joints swing about the start, and the arm ends there.
 
     Measures with the wrist sensor; nothing may touch the tool or the part meanwhile. The load that is set is counted
-    in. Rejected before the motion where a joint has no room, or an attached part would collide.
+    in. Rejected before the motion where a joint has no room, or the path is not free.
     """
 
     amplitude_rad: PayloadAmplitude = 0.5
+    collisions: CollisionOptions = CollisionOptions()
 
 
 class IdentifyFriction(Action[FrictionEstimate, IdentificationFeedback], frozen=True, kw_only=True):
     """Measure the friction of joints: each in turn swings about the start, and the arm ends there.
 
     Without `joints` all of them. Measures with the torques of the motors, so that a wrong load has little effect.
-    Rejected before the motion where a joint has no room, or an attached part would collide.
+    Rejected before the motion where a joint has no room, or the path is not free.
     """
 
     joints: tuple[str, ...] = ()
     amplitude_rad: FrictionAmplitude = 0.4
+    collisions: CollisionOptions = CollisionOptions()

@@ -13,13 +13,13 @@ LONGEST_PUSH_S = 60.0
 
 
 class ResetPartsResult(Message, frozen=True, kw_only=True):
-    """The parts that were reset."""
+    """The parts that were reset; unknown bodies are without names here too."""
 
     parts: tuple[str, ...]
 
 
 class ResetParts(Service[ResetPartsResult], frozen=True, kw_only=True):
-    """Reset all parts to their initial poses, for the next trial.
+    """Reset all parts, and the free ones of the unknown bodies, to their initial poses, for the next trial.
 
     Refused while a run holds a robot or anything moves, so that no behavior can move parts by it.
     """

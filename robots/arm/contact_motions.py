@@ -20,7 +20,7 @@ from robots.model.transform import RigidTransform
 from robots.motion import plan_line
 from robots.motion.min_jerk import PEAK_SPEED
 from robots.motion.speed_profile import MIN_JERK, SpeedProfile, plan_approach
-from robots.motion.touch_speed import effective_mass_kg, touch_speed_m_s
+from robots.motion.touch_speed import effective_mass_kg, friction_push_n, touch_speed_m_s
 from robots.port import Array, ContactCondition, JointTrajectory, Motion
 from robots.port.wrench import to_wrench
 
@@ -83,7 +83,18 @@ class ContactMotions:
                 where=handle.address,
                 hint="lower `force_n` or raise `peak_n`",
             )
-        touch_m_s = touch_speed_m_s(self._mass_kg(direction), peak_n=goal.peak_n, surface_n_m=goal.surface_n_m)
+        runner = self._runner
+        friction_n = friction_push_n(runner.kinematics, runner.port.sample().desired_rad, direction)
+        if friction_n >= goal.peak_n:
+            raise GoalRejected(
+                f"a peak of {goal.peak_n:g} N is not possible here: what compensates the friction of the joints alone "
+                f"pushes with {friction_n:.1f} N along the direction",
+                where=handle.address,
+                hint="raise `peak_n`, or begin where the joints move less for the same path",
+            )
+        touch_m_s = touch_speed_m_s(
+            self._mass_kg(direction), peak_n=goal.peak_n, surface_n_m=goal.surface_n_m, friction_n=friction_n
+        )
         return plan_approach(
             goal.distance_m,
             clear_m=min(goal.clear_m, goal.distance_m),

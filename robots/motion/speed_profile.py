@@ -48,7 +48,7 @@ def plan_approach(
     duration_s = float(times[-1])
 
     def shares(time_shares: Array) -> Array:
-        return _distances(np.clip(time_shares, 0.0, 1.0) * duration_s, times, speeds) / distance_m
+        return integrate_speeds(np.clip(time_shares, 0.0, 1.0) * duration_s, times, speeds)[0] / distance_m
 
     return SpeedProfile(shares=shares, peak=top * duration_s / distance_m), duration_s
 
@@ -74,12 +74,13 @@ def _top_speed(clear_m: float, speed_m_s: float, touch_m_s: float) -> float:
     return low
 
 
-def _distances(passed_s: Array, times: Array, speeds: Array) -> Array:
-    """Return the integral of speeds that change with minimum jerk between `times`."""
+def integrate_speeds(passed_s: Array, times: Array, speeds: Array) -> tuple[Array, Array]:
+    """Return distances and speeds at instants, for speeds that change with minimum jerk between those at `times`."""
     lengths = np.diff(times)
     starts = np.concatenate(([0.0], np.cumsum(lengths * (speeds[:-1] + speeds[1:]) / 2.0)))
     index = np.clip(np.searchsorted(times, passed_s, side="right") - 1, 0, len(lengths) - 1)
     length = lengths[index]
     u = np.divide(passed_s - times[index], length, out=np.zeros_like(passed_s), where=length > 0.0)
     change = speeds[index + 1] - speeds[index]
-    return starts[index] + length * (speeds[index] * u + change * u**4 * (2.5 - 3.0 * u + u**2))
+    distances = starts[index] + length * (speeds[index] * u + change * u**4 * (2.5 - 3.0 * u + u**2))
+    return distances, speeds[index] + change * min_jerk(u)

@@ -2,7 +2,8 @@
 
 The force at the first touch of something hard rises within milliseconds, before any controller can react; it is
 that of the mass that the tool seems to have, m, on the stiffness of the contact, k: v √(m k) for the speed v. So it
-can only be limited by the speed.
+can only be limited by the speed. What compensates the friction of the joints pushes on at the touch, as the friction
+itself ends with the motion: this force does not depend on the speed, and comes on top.
 
 - Khatib, Inertial properties in robotic manipulation: an object-level framework, IJRR 14(1), 1995: effective mass.
 - Haddadin, Albu-Schäffer, Hirzinger, Requirements for safe robots: measurements, analysis and new insights,
@@ -33,6 +34,24 @@ def effective_mass_kg(dynamics: ArmDynamics, kinematics: ArmKinematics, joints: 
     return 1.0 / max(mobility, _LEAST_MOBILITY_1_KG)
 
 
-def touch_speed_m_s(mass_kg: float, *, peak_n: float, surface_n_m: float) -> float:
-    """Return the speed at which this mass presses on a contact of this stiffness with at most `peak_n`."""
-    return peak_n / math.sqrt(mass_kg * surface_n_m)
+def friction_push_n(kinematics: ArmKinematics, joints: Array, direction: Array) -> float:
+    """Return the force along `direction` that compensated friction exerts: its power on a line over the speed.
+
+    The line keeps the orientation of the tool; the power is that of the nominal Coulomb friction of the joints.
+    """
+    twist = np.concatenate((direction, np.zeros(3)))
+    jacobian = kinematics.tool_pose_and_jacobian(joints)[1]
+    rates = np.linalg.lstsq(jacobian, twist, rcond=None)[0]
+    return float(np.array(kinematics.model.friction.coulomb_nm) @ np.abs(rates))
+
+
+def touch_speed_m_s(mass_kg: float, *, peak_n: float, surface_n_m: float, friction_n: float = 0.0) -> float:
+    """Return the speed at which this mass presses on a contact of this stiffness with at most `peak_n`.
+
+    Args:
+        mass_kg: Effective mass.
+        peak_n: Greatest force that is wanted.
+        surface_n_m: Stiffness of the contact.
+        friction_n: Of that force, what compensated friction exerts; less than `peak_n`.
+    """
+    return (peak_n - friction_n) / math.sqrt(mass_kg * surface_n_m)

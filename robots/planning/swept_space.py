@@ -36,13 +36,15 @@ class SweptSpaceRequest(msgspec.Struct, frozen=True, kw_only=True, tag="ask_swep
 class SweptSpace(msgspec.Struct, frozen=True, kw_only=True, tag="swept_space"):
     """The unknown space that an arm passes through; all else is meaningless where `unknown_m3` is 0.
 
-    `first_m` is the centre of the first unknown voxel, reached after `at_s` of the trajectory's own time; `age_s` is
-    the time since it was last seen, None for never. `low_m` and `high_m` bound all unknown voxels of the motion.
+    `first_m` is the centre of the first unknown voxel, reached after `at_s` of the trajectory's own time, the last
+    one after `last_s`; `age_s` is the time since it was last seen, None for never. `low_m` and `high_m` bound all
+    unknown voxels of the motion.
     """
 
     unknown_m3: float
     first_m: Vector3 = (0.0, 0.0, 0.0)
     at_s: float = 0.0
+    last_s: float = 0.0
     age_s: float | None = None
     low_m: Vector3 = (0.0, 0.0, 0.0)
     high_m: Vector3 = (0.0, 0.0, 0.0)

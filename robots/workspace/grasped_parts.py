@@ -13,18 +13,22 @@ _SLIPPED_M, _SLIPPED_RAD = 0.002, 0.02
 _LOST_M, _LOST_RAD = 0.03, 0.35
 
 
-class GraspedPart(msgspec.Struct, frozen=True, kw_only=True):
-    """A part in a hand: `taken` is its pose in the link's frame at attachment; `touches` are contacts still allowed."""
+class GraspedPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """A part in a hand: `taken` is its pose in the link's frame at attachment; `touches` are contacts still allowed.
+
+    `by_contact` if nobody has attached it: it is in the hand as long as the tool is measured to hold it.
+    """
 
     part: AttachedPart
     link: str
     taken: Pose
     touches: frozenset[str]
+    by_contact: bool = False
 
     def slipped_to(self, now: RigidTransform) -> GraspedPart | None:
         """Return the grasped part at `now` in the link's frame; None if it is lost."""
         taken = RigidTransform.from_pose(self.taken)
-        if taken.distance_m(now) > _LOST_M or taken.angle_rad(now) > _LOST_RAD:
+        if not self.by_contact and (taken.distance_m(now) > _LOST_M or taken.angle_rad(now) > _LOST_RAD):
             return None
         known = RigidTransform.from_pose(self.part.pose)
         if known.distance_m(now) <= _SLIPPED_M and known.angle_rad(now) <= _SLIPPED_RAD:

@@ -58,6 +58,7 @@ class LiveScene:
         self._rules: dict[frozenset[str], tuple[str, str, bool]] = {}
         self._held: dict[str, GraspedPart] = {}
         self._let_go: dict[str, ReleasedPart] = {}
+        self._detached_in_grip: set[tuple[str, str]] = set()
         self._reservations: dict[str, tuple[Row, ...]] = {}
         self.revision = 0
 
@@ -79,6 +80,7 @@ class LiveScene:
         for name, held in tuple(self._held.items()):
             if self._update_held(name, held, measured):
                 changed.add(name)
+        changed |= self._follow_grips(measured)
         if changed:
             self.revision += 1
         if parts or arms:
@@ -96,8 +98,12 @@ class LiveScene:
         return with_reservations(scene, self._reservations_before(arm))
 
     def holds(self, arm: str) -> bool:
-        """Return whether an arm held a part at the last measurement."""
-        return any(one.part.arm == arm for one in self._held.values())
+        """Return whether an arm held a part at the last measurement, attached or by contact."""
+        return bool(self.attached_to(arm))
+
+    def attached_to(self, arm: str) -> tuple[AttachedPart, ...]:
+        """Return the parts that an arm held at the last measurement."""
+        return tuple(one.part for one in self._held.values() if one.part.arm == arm)
 
     def lies(self, arm: str) -> bool:
         """Return whether a part held by an arm still touches the object that it was picked from."""
@@ -182,25 +188,20 @@ class LiveScene:
             raise _unknown(f"link of {arm}", frame, sorted(link_names(model)))
         before = self._held.get(part)
         if before is not None and (before.part.arm, before.link) == (arm, frame):
+            self._held[part] = msgspec.structs.replace(before, by_contact=False)
             return
         measured = self._look()
         self._tracked.take(measured)
-        solids = self._solids_of(part)
-        at = measured.link(arm, frame).inverse().then(self._pose_of(part, measured))
-        attached = AttachedPart(name=part, arm=arm, solids=solids, pose=at.to_pose(frame), link=link)
-        self._put.pop(part, None)
-        self._let_go.pop(part, None)
-        self._held[part] = GraspedPart(part=attached, link=frame, taken=at.to_pose(frame), touches=frozenset())
-        touches = names_near_held_part(self._measured(measured), part, within_m=TOUCHING_M)
-        self._held[part] = msgspec.structs.replace(self._held[part], touches=touches)
+        self._take(part, arm, link, measured, by_contact=False)
         self.revision += 1
-        _log.info("%s holds %s%s", arm, part, f", which touches {', '.join(sorted(touches))}" if touches else "")
 
     def detach(self, part: str) -> None:
         """Detach a part; one that is not attached is not an error."""
         if part not in self._held:
             self._require_known(part)
             return
+        # It is still in the grip, but whoever detaches it means it as put down.
+        self._detached_in_grip.add((part, self._held[part].part.arm))
         self._drop(part, self._look())
         self.revision += 1
 
@@ -233,6 +234,39 @@ class LiveScene:
         self._let_go = {one.part: one for one in memo.let_go}
         self._reservations.clear()
         self.revision += 1
+
+    def _take(self, part: str, arm: str, link: str, measured: MeasuredPoses, *, by_contact: bool) -> None:
+        """Fix a part to a link of an arm, the tool link if `link` is empty; what it touches there stays allowed."""
+        frame = link or self._base.arm(arm).placement.robot().tool_link
+        solids = self._solids_of(part)
+        at = measured.link(arm, frame).inverse().then(self._pose_of(part, measured))
+        attached = AttachedPart(name=part, arm=arm, solids=solids, pose=at.to_pose(frame), link=link)
+        self._put.pop(part, None)
+        self._let_go.pop(part, None)
+        taken = GraspedPart(
+            part=attached, link=frame, taken=at.to_pose(frame), touches=frozenset(), by_contact=by_contact
+        )
+        self._held[part] = taken
+        touches = names_near_held_part(self._measured(measured), part, within_m=TOUCHING_M)
+        self._held[part] = msgspec.structs.replace(taken, touches=touches)
+        how = ", by contact" if by_contact else ""
+        _log.info("%s holds %s%s%s", arm, part, how, f"; it touches {', '.join(sorted(touches))}" if touches else "")
+
+    def _follow_grips(self, measured: MeasuredPoses) -> set[str]:
+        """Take the parts that tools are measured to hold, and drop those that they have let go; return their names."""
+        grips = {(arm.holds, name) for name, arm in measured.arms.items() if arm.holds in self._parts}
+        changed: set[str] = set()
+        for name, held in tuple(self._held.items()):
+            if held.by_contact and (name, held.part.arm) not in grips:
+                _log.info("%s has let go of %s", held.part.arm, name)
+                self._drop(name, measured)
+                changed.add(name)
+        self._detached_in_grip &= grips
+        for name, arm in sorted(grips - self._detached_in_grip):
+            if name not in self._held:
+                self._take(name, arm, "", measured, by_contact=True)
+                changed.add(name)
+        return changed
 
     def _update_held(self, name: str, held: GraspedPart, measured: MeasuredPoses) -> bool:
         """Update the pose of a held part in the hand; return true if it has changed, or if the part is lost."""

@@ -10,10 +10,14 @@ from robots.model.transform import RigidTransform
 
 @dataclass(frozen=True, kw_only=True)
 class MeasuredArm:
-    """One arm: its joints (radians, n) and the tool's joints by name (radians or meters)."""
+    """One arm: its joints (radians, n), the tool's joints by name (radians or meters), and the part in the tool.
+
+    `holds` is the name of the part by contact; empty for none, and for a tool that cannot tell what it touches.
+    """
 
     joints_rad: tuple[float, ...]
     tool_joints: tuple[tuple[str, float], ...] = ()
+    holds: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -41,6 +41,11 @@ def describe_names(text: str) -> str:
     return described if _AHEAD.search(described) is None else f"{_AHEAD.sub('', described)} on its planned path"
 
 
+def is_reserved(name: str) -> bool:
+    """Return whether a name in such a scene is that of an arm, or of a part that it holds, on its reserved path."""
+    return _AHEAD.search(name) is not None
+
+
 def _is_of(rule: str, arm: str) -> bool:
     return rule == arm or rule.startswith(arm + "/")
 

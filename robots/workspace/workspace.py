@@ -146,15 +146,15 @@ class Workspace:
         return live.scene_for(arm)
 
     def holds(self, arm: str) -> bool:
-        """Return whether an arm holds an attached part; a part that it has just lost may still count."""
+        """Return whether an arm holds a part, attached or by contact; before `ready` only what is remembered."""
         if self._live is None:
             return any(memo.part.arm == arm for memo in self._early_memo.held)
+        self._refresh(self._live)
         return self._live.holds(arm)
 
     def attached_to(self, arm: str) -> tuple[AttachedPart, ...]:
         """Return the parts that an arm held at the last measurement."""
-        held = self._live.whole().attached if self._live is not None and self._live.holds(arm) else ()
-        return tuple(part for part in held if part.arm == arm)
+        return self._live.attached_to(arm) if self._live is not None else ()
 
     def lies(self, arm: str) -> bool:
         """Return whether a part held by an arm still touches what it was picked from; await `ready` first."""

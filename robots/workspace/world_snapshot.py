@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from robots.model.transform import RigidTransform
 from robots.scene.sim_scene import SimScene
+from robots.sim.grip.tool_reading import state_publisher
+from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
 from robots.sim.world.sim_world import SimWorld
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
 from robots.workspace.tool_joint_estimator import ToolJointEstimator
@@ -20,6 +22,7 @@ class WorldPoseReader:
         """Return the measured arms, tools and parts."""
         snapshot, summary = self._world.measured(), self._world.host.summary
         xyz, xyzw = snapshot.frames()
+        tools = {arm.name: arm for arm in summary.arms}
         row = {name: index for index, name in enumerate(summary.frames)}
 
         def frame(name: str) -> RigidTransform:
@@ -32,7 +35,17 @@ class WorldPoseReader:
             name: MeasuredArm(
                 joints_rad=tuple(snapshot.arm(name).position_rad.tolist()),
                 tool_joints=tool.read(lambda one, arm=name: link(arm, one)),
+                holds=_held_part(snapshot, tools[name], parts=summary.parts),
             )
             for name, tool in self._arms.items()
         }
         return MeasuredPoses(arms=arms, parts={name: frame(name) for name in summary.parts}, link=link)
+
+
+def _held_part(snapshot: SimSnapshot, arm: ArmSummary, *, parts: tuple[str, ...]) -> str:
+    """Return the part that the tool of an arm holds, by contact; empty if none, or if its name is not measured."""
+    if arm.tool is None:
+        return ""
+    state = state_publisher(arm.tool.kind).state(snapshot.tool(arm.name), arm.tool, parts=parts)
+    part = str(getattr(state, "part", "")) if getattr(state, "held", False) else ""
+    return part if part in parts else ""

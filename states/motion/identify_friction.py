@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 from msgspec import Meta
 
 from engine.skills import identification
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.identification import FrictionAmplitude, JointFrictionEstimate
 from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
@@ -28,6 +29,7 @@ class IdentifyFriction(State, frozen=True, kw_only=True):
     robot: RobotName
     joints: Annotated[tuple[str, ...], Meta(description="Joints to measure; empty for all")] = ()
     amplitude_rad: FrictionAmplitude = 0.4
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -35,7 +37,9 @@ class IdentifyFriction(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and return the outcome of its end."""
-        goal = identification.IdentifyFriction(joints=self.joints, amplitude_rad=self.amplitude_rad)
+        goal = identification.IdentifyFriction(
+            joints=self.joints, amplitude_rad=self.amplitude_rad, collisions=self.collisions
+        )
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded" and end.result is not None:
             return Outcome("identified", {"friction": end.result.joints})

@@ -11,6 +11,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.messages import Vector3
 from engine.skills import identification
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.identification import PayloadAmplitude
 from engine.state import Context, Outcome, State, goal_cause
 from states.motion.motion_target import RobotName
@@ -41,6 +42,7 @@ class IdentifyPayload(State, frozen=True, kw_only=True):
     tolerance_kg: Annotated[
         float, Meta(gt=0.0, description="Maximum uncertainty of the mass", extra_json_schema={"unit": "kg"})
     ] = 0.1
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -48,7 +50,7 @@ class IdentifyPayload(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and compare the uncertainty of its result."""
-        goal = identification.IdentifyPayload(amplitude_rad=self.amplitude_rad)
+        goal = identification.IdentifyPayload(amplitude_rad=self.amplitude_rad, collisions=self.collisions)
         end = await ctx.perform(goal, to=self.robot)
         what = f"{self.robot} did not identify its payload"
         if end.status != "succeeded" or end.result is None:

@@ -44,6 +44,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "GripperState ~ HandState": "two kinds of tools, of which each measures something of its own",
     "HandResult ~ HandState": "how an action ended; a measurement",
     "IfThenElseSpec ~ WhileDoElseSpec": "two kinds of nodes with the same parts",
+    "IdentifyFriction ~ IdentifyPayload": "joints of a choice; the wrist, and a tolerance of the mass",
     "Joints ~ NamedAngles": "an entry of a store, checked against its names; an entry as a person writes it",
     "KeySignature ~ KeyView": "a declaration in Python with its type; its plain data",
     "KeyView ~ ParameterView": "a key of a state; a parameter, whose schema has the default",

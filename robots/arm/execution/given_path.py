@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import AsyncGenerator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from engine.bus import ActiveGoal
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.monitored_motion import MonitoredMotion
 from robots.arm.execution.motion_runner import MotionRunner
-from robots.arm.scene_queries.path_guard import PathGuard, PathRules
+from robots.arm.scene_queries.path_guard import AdmittedPath, PathGuard, Timing
 from robots.planning.request import ToolContact
 from robots.port import Array, ForceTask, JointTrajectory, Motion
 
@@ -23,44 +24,54 @@ class GivenPath:
     """The path of one goal; created by `given_path`."""
 
     def __init__(
-        self, runner: MotionRunner, guard: PathGuard | None, options: CollisionOptions, tool_contact: ToolContact
+        self,
+        runner: MotionRunner,
+        guard: PathGuard | None,
+        options: CollisionOptions,
+        *,
+        tool_contact: ToolContact,
+        timing: Timing,
     ) -> None:
         self._runner = runner
         self._guard = guard
         self._options = options
         self._tool_contact: ToolContact = tool_contact
-        self._admitted: tuple[JointTrajectory, PathRules] | None = None
+        self._timing: Timing = timing
+        self._admitted: AdmittedPath | None = None
 
     async def planned(self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[T]]) -> T:
-        """Plan from the set point and accept the goal, or reject it, also because the path is not free."""
+        """Plan from the set point and accept the goal, or reject it, also because the path is not free.
+
+        What is returned may be slower than planned, where it passes through space that no camera sees.
+        """
 
         async def checked(start: Array) -> T:
             planned = await plan(start)
-            trajectory = planned.trajectory if isinstance(planned, ForceTask) else planned
-            if self._guard is not None:
-                rules = await self._guard.admit(
-                    trajectory,
-                    options=self._options,
-                    tool_contact=self._tool_contact,
-                    kinematics=self._runner.kinematics,
-                )
-                self._admitted = trajectory, rules
-            return planned
+            if self._guard is None:
+                return planned
+            self._admitted = await self._guard.admit(
+                planned.trajectory if isinstance(planned, ForceTask) else planned,
+                options=self._options,
+                tool_contact=self._tool_contact,
+                kinematics=self._runner.kinematics,
+                timing="fixed" if isinstance(planned, ForceTask) else self._timing,
+            )
+            return planned if isinstance(planned, ForceTask) else cast("T", self._admitted.trajectory)
 
         return await self._runner.planned(handle, checked)
 
     def monitored(self, motion: Motion) -> Motion:
-        """Return the motion of the port, monitored on the path that was planned."""
+        """Return the motion of the port, monitored on the path that was planned, and reserved for this arm."""
         if self._guard is None or self._admitted is None:
             return motion
-        trajectory, rules = self._admitted
         runner = self._runner
         return MonitoredMotion(
             motion,
-            trajectory,
-            rules,
+            self._admitted.trajectory,
+            self._admitted.rules,
             guard=self._guard,
             options=self._options,
+            reservation=PathReservation(runner, self._guard.workspace, made=True),
             clock=runner.clock,
             acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
         )
@@ -68,15 +79,19 @@ class GivenPath:
 
 @asynccontextmanager
 async def given_path(
-    runner: MotionRunner, options: CollisionOptions, *, tool_contact: ToolContact = "at_end"
+    runner: MotionRunner,
+    options: CollisionOptions,
+    *,
+    tool_contact: ToolContact = "at_end",
+    timing: Timing = "free",
 ) -> AsyncGenerator[GivenPath]:
     """Return the path of one goal; the cameras run meanwhile. Without a planning scene nothing is checked.
 
-    `tool_contact` is the contact that is meant by this kind of motion.
+    `tool_contact` is the contact that is meant by this kind of motion; with a fixed `timing` it is never slowed.
     """
     guard = runner.path_guard if options.avoid else None
     if guard is None:
-        yield GivenPath(runner, None, options, tool_contact)
+        yield GivenPath(runner, None, options, tool_contact=tool_contact, timing=timing)
         return
     async with guard.observed():
-        yield GivenPath(runner, guard, options, tool_contact)
+        yield GivenPath(runner, guard, options, tool_contact=tool_contact, timing=timing)

@@ -12,6 +12,7 @@ import numpy as np
 from engine.clock import Clock
 from engine.errors import FlexcellError
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.scene_queries.path_guard import PathGuard, PathRules
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.planner_query import QuerySuperseded, await_answer
@@ -42,7 +43,8 @@ class MonitoredMotion:
 
     Every change of the scene triggers a check of the remaining path. Before a contact the arm decelerates on its
     path; only for another arm, which may leave, it first goes as far as it can stop. At rest it continues when the
-    path is free within the patience of the goal, else the motion fails with the reason.
+    path is free within the patience of the goal, else the motion fails with the reason. While it moves, its path is
+    reserved: of two arms whose paths meet, the one that starts later stops.
 
     Args:
         inner: The motion of the port.
@@ -50,6 +52,7 @@ class MonitoredMotion:
         rules: The contacts that it may make.
         guard: Checks the path.
         options: The collision options of the goal.
+        reservation: Keeps other arms off the remaining path.
         clock: The arm's clock.
         acceleration_rad_s2: The acceleration limits, (n,).
     """
@@ -62,6 +65,7 @@ class MonitoredMotion:
         *,
         guard: PathGuard,
         options: CollisionOptions,
+        reservation: PathReservation,
         clock: Clock,
         acceleration_rad_s2: Array,
     ) -> None:
@@ -70,6 +74,7 @@ class MonitoredMotion:
         self._rules = rules
         self._guard = guard
         self._patience_s = options.patience_s
+        self._reservation = reservation
         self._clock = clock
         speeds = np.abs(trajectory.velocity_rad_s)
         self._stopping_s = _REACTION_S + float((speeds / (_BRAKING_SHARE * acceleration_rad_s2)).max(initial=0.0))
@@ -78,6 +83,11 @@ class MonitoredMotion:
         self._held = self._halted = False
         self._end = asyncio.ensure_future(inner.report())
         self._unwatch = guard.workspace.watch(self._notice)
+        reservation.renew(trajectory)
+        reservation.update(0.0)
+        if guard.workspace.shared:
+            # Another arm may have reserved its path since this one was checked.
+            self._changed.set()
         self._task = asyncio.create_task(self._run(), name=f"path monitoring of {guard.arm}")
 
     @property
@@ -94,6 +104,8 @@ class MonitoredMotion:
         self._held = self._halted = True
         self._changed.set()
         await self._inner.hold()
+        if self._halted:
+            self._reservation.withdraw()
 
     async def resume(self) -> None:
         """Check whether the path is free; return when moving, or when the path is known to be blocked."""
@@ -113,6 +125,8 @@ class MonitoredMotion:
         self._inner.cancel()
 
     def _notice(self, names: frozenset[str]) -> None:
+        if self._guard.arm in names and not self._halted:
+            self._reservation.update(self._passed_s)
         if names - {self._guard.arm} or not names:
             self._changed.set()
 
@@ -127,6 +141,7 @@ class MonitoredMotion:
             return await self._fail(f"path monitoring failed: {type(error).__name__}: {error}")
         finally:
             self._unwatch()
+            self._reservation.withdraw()
             self._checked.set()
 
     async def _monitor(self) -> MotionReport:
@@ -198,6 +213,7 @@ class MonitoredMotion:
         self._halted = True
         _log.info("%s stops: %s", self._guard.arm, found.reason)
         await self._inner.hold()
+        self._reservation.withdraw()
         if self._passed_s < found.at_s:
             return found
         return _Obstruction(reason=f"{found.reason}; it was detected too late to stop before it", at_s=found.at_s)
@@ -205,6 +221,7 @@ class MonitoredMotion:
     async def _go_on(self) -> None:
         if self._halted:
             self._halted = False
+            self._reservation.update(self._passed_s)
             await self._inner.resume()
         self._checked.set()
 

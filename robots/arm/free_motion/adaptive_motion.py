@@ -9,10 +9,10 @@ from typing import TypeVar
 
 from engine.errors import FlexcellError
 from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.free_motion.adaptive_motion_report import AdaptiveMotionListener, AdaptiveMotionReport
 from robots.arm.free_motion.blocked_path_policy import BlockedPathPolicy
-from robots.arm.free_motion.lookahead_path import PathReservation
 from robots.arm.free_motion.path_monitor import PathMonitor, PredictedCollision
 from robots.arm.scene_queries.path_planner import PathPlanner, PathSegment
 from robots.arm.scene_queries.planner_query import QuerySuperseded, await_answer, discard_query

@@ -48,6 +48,7 @@ class IdentificationMotions:
         model, settings = self._runner.model, self._runner.port.settings
         samples = await self._excited(
             handle,
+            goal.collisions,
             lambda start: swing_wrist(
                 start, amplitude_rad=goal.amplitude_rad, limits=model.limits, joints=model.arm_joints
             ),
@@ -69,6 +70,7 @@ class IdentificationMotions:
         moved = [at for at, joint in enumerate(model.arm_joints) if not goal.joints or joint in goal.joints]
         samples = await self._excited(
             handle,
+            goal.collisions,
             lambda start: swing_joints(
                 start, moved, amplitude_rad=goal.amplitude_rad, limits=model.limits, joints=model.arm_joints
             ),
@@ -76,7 +78,10 @@ class IdentificationMotions:
         return FrictionEstimate(joints=self._frictions(samples, moved, handle), samples=samples.count)
 
     async def _excited(
-        self, handle: ActiveGoal[IdentificationFeedback], excite: Callable[[Array], JointTrajectory]
+        self,
+        handle: ActiveGoal[IdentificationFeedback],
+        collisions: CollisionOptions,
+        excite: Callable[[Array], JointTrajectory],
     ) -> MotionSamples:
         """Execute an exciting motion and return its samples."""
         runner = self._runner
@@ -90,7 +95,7 @@ class IdentificationMotions:
         def publish_feedback(motion: Motion) -> None:
             handle.feedback(IdentificationFeedback(joints=runner.measured(), progress=motion.progress))
 
-        async with given_path(runner, CollisionOptions()) as path:
+        async with given_path(runner, collisions, timing="fixed") as path:
             trajectory = await path.planned(handle, plan)
 
             def start() -> Motion:

@@ -6,6 +6,7 @@ import logging
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -16,20 +17,27 @@ from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.unknown_space_check import UNKNOWN_SPACE_HINT, UnknownSpaceCheck
 from robots.model.mechanics.kinematics import ArmKinematics
+from robots.motion.slow_section import slow_section
 from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.workspace.path_reservations import is_reserved
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
 
 # Parts this near to the tool at the start of a motion count as carried: fingers hold a part by its measured pose.
 _CARRIED_M = 0.002
 _MOVED_RAD = 1e-3
+# Unknown space is reached up to this earlier than the swept space says: it is looked at in steps.
+_EARLY_S = 0.2
 _HINT = (
     "choose another path or goal, plan one with `MoveFree`, or name what may be touched: "
     "`collisions: {may_touch: [name]}`; `collisions: {avoid: false}` switches the check off"
 )
 _log = logging.getLogger("flexcell.arm")
+
+Timing = Literal["free", "fixed"]
+"""Whether a motion may be slowed: `fixed` where its task depends on the time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +46,14 @@ class PathRules:
 
     tool_contact: ToolContact = "at_end"
     may_touch: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdmittedPath:
+    """A path that is free by its rules; `trajectory` is the given one, or slowed where it passes unknown space."""
+
+    trajectory: JointTrajectory
+    rules: PathRules
 
 
 class PathGuard:
@@ -70,8 +86,9 @@ class PathGuard:
         options: CollisionOptions,
         tool_contact: ToolContact,
         kinematics: ArmKinematics,
-    ) -> PathRules:
-        """Return the rules by which the path is free now, and is to be checked during the motion.
+        timing: Timing = "free",
+    ) -> AdmittedPath:
+        """Return the path with the rules by which it is free now, and is to be checked during the motion.
 
         Raises:
             PathBlocked: a contact, or unknown space where the cell does not accept it; the message names both bodies
@@ -94,8 +111,8 @@ class PathGuard:
                 where=self.arm,
                 hint=_HINT,
             )
-        await self._through_known_space(trajectory, kinematics)
-        return rules
+        known = await self._through_known_space(trajectory, kinematics, timing)
+        return AdmittedPath(trajectory=known, rules=rules)
 
     async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
@@ -112,9 +129,11 @@ class PathGuard:
         )
 
     def is_other_arm(self, pairs: tuple[NamePair, ...]) -> bool:
-        """Return whether all contacts are with other arms, which may be gone when the arm gets there."""
-        arms = {arm.name for arm in self.workspace.scene_for(self.arm).arms} - {self.arm}
-        return bool(pairs) and all(any(name.partition("/")[0] in arms for name in pair) for pair in pairs)
+        """Return whether all contacts are with other arms, or what they hold, which may be gone by then."""
+        scene = self.workspace.scene_for(self.arm)
+        others = {arm.name for arm in scene.arms} | {part.name for part in scene.attached if part.arm != self.arm}
+        others.discard(self.arm)
+        return bool(pairs) and all(any(name.partition("/")[0] in others for name in pair) for pair in pairs)
 
     def _allowing(self, scene: PlanningScene, names: tuple[str, ...]) -> PlanningScene:
         if not names:
@@ -147,28 +166,39 @@ class PathGuard:
         before = workspace.scene_for(self.arm)
         await workspace.pause()
         after = workspace.scene_for(self.arm)
-        names = {name.partition("/")[0] for pair in pairs for name in pair} - {self.arm}
+        holder = {part.name: part.arm for part in before.attached}
+        names = {name.partition("/")[0] for pair in pairs for name in pair}
+        # Only an arm that moves reserves its path.
+        arms = {holder.get(name, name) for name in names if not is_reserved(name)} - {self.arm}
         known = {arm.name for arm in before.arms} & {arm.name for arm in after.arms}
         return all(
             name not in known
             or np.abs(np.array(before.arm(name).joints_rad) - np.array(after.arm(name).joints_rad)).max(initial=0.0)
             > _MOVED_RAD
-            for name in names
+            for name in arms
         )
 
-    async def _through_known_space(self, trajectory: JointTrajectory, kinematics: ArmKinematics) -> None:
-        """Return if no unknown space is on the path, or if the cell accepts it there."""
+    async def _through_known_space(
+        self, trajectory: JointTrajectory, kinematics: ArmKinematics, timing: Timing
+    ) -> JointTrajectory:
+        """Return the trajectory if the cell accepts the unknown space on it, slowed there by the policy `slow`."""
         policy, unknown = self.workspace.unknown_space.policy, self._unknown_space
         swept = await (unknown.once_observed if policy == "look_first" else unknown.on)(trajectory)
         if swept is None:
-            return
+            return trajectory
         message = unknown.refusal(swept, trajectory).message
-        limits = np.array(kinematics.model.limits.velocity_rad_s)
-        if policy == "slow" and float((np.abs(trajectory.velocity_rad_s) / limits).max(initial=0.0)) <= SLOW_SPEED:
-            _log.info("%s: %s", self.arm, message)
-            return
-        slow = f"; at most {SLOW_SPEED:.0%} of the joint speed limits are accepted there" if policy == "slow" else ""
-        raise PathBlocked(message + slow, where=self.arm, hint=UNKNOWN_SPACE_HINT)
+        if policy == "slow":
+            limits = kinematics.model.limits
+            from_s = max(0.0, swept.at_s - _EARLY_S)
+            slowed = slow_section(trajectory, from_s=from_s, to_s=swept.last_s, speed=SLOW_SPEED, limits=limits)
+            if slowed is trajectory or timing == "free":
+                _log.info("%s moves at most at %.0f %% of its speed there: %s", self.arm, 100.0 * SLOW_SPEED, message)
+                return slowed
+            message += (
+                f"; at most {SLOW_SPEED:.0%} of the joint speed limits are accepted there, "
+                "and this motion cannot be slowed"
+            )
+        raise PathBlocked(message, where=self.arm, hint=UNKNOWN_SPACE_HINT)
 
 
 def _place(trajectory: JointTrajectory, at_s: float, kinematics: ArmKinematics) -> str:

@@ -47,6 +47,7 @@ def swept_space(request: SweptSpaceRequest, problem: CompiledProblem) -> SweptSp
         unknown_m3=count * observed.voxel_m**3,
         first_m=_point(centres[0]),
         at_s=float(at_row[0]) * trajectory.dt_s,
+        last_s=float(at_row[:count].max()) * trajectory.dt_s,
         age_s=None if age == NEVER_SEEN else age / AGES_PER_S,
         low_m=_point(centres.min(axis=0) - observed.voxel_m / 2.0),
         high_m=_point(centres.max(axis=0) + observed.voxel_m / 2.0),

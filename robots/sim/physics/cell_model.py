@@ -54,9 +54,9 @@ class CellModel:
     frame_bodies: Indices
     parts: tuple[str, ...]
     part_qpos: Indices
-    """Addresses of the parts' poses, seven per part, in the order of `parts`."""
+    """Addresses of the poses of free bodies, seven each: the parts, then those that nobody knows of."""
     part_dof: Indices
-    """Addresses of the parts' velocities, six per part."""
+    """Addresses of their velocities, six each."""
     body_names: tuple[str, ...]
     people: tuple[PersonIndices, ...] = ()
 
@@ -85,7 +85,8 @@ def build_cell(scene: SimScene) -> CellModel:
     frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
     frames += tuple(body for person in scene.people for body in body_names(person.name))
     # Frames are drawn; only `parts` are known by name.
-    frames += tuple(part.name for part in scene.unknown_parts)
+    unknown = tuple(part.name for part in scene.unknown_parts)
+    frames += unknown
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -94,8 +95,8 @@ def build_cell(scene: SimScene) -> CellModel:
         frames=frames + parts,
         frame_bodies=np.array([compiled.body(name).id for name in frames + parts], dtype=np.intp),
         parts=parts,
-        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts for i in range(7)),
-        part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts for i in range(6)),
+        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts + unknown for i in range(7)),
+        part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts + unknown for i in range(6)),
         body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
         people=tuple(person_indices(compiled, person) for person in scene.people),
     )

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from robots.model.mechanics.dynamics import ArmDynamics, Payload
-from robots.motion.touch_speed import effective_mass_kg, touch_speed_m_s
+from robots.model.transform import RigidTransform
+from robots.motion import plan_line
+from robots.motion.touch_speed import effective_mass_kg, friction_push_n, touch_speed_m_s
 from robots.port import Array
 from tests.robots.panda_arm import panda_kinematics
 
@@ -48,3 +50,19 @@ def test_twice_the_peak_allows_twice_the_speed_and_four_times_the_mass_half_of_i
     assert slow == pytest.approx(10.0 / np.sqrt(5.0 * 45000.0))
     assert touch_speed_m_s(5.0, peak_n=20.0, surface_n_m=45000.0) == pytest.approx(2.0 * slow)
     assert touch_speed_m_s(20.0, peak_n=10.0, surface_n_m=45000.0) == pytest.approx(0.5 * slow)
+
+
+def test_what_compensates_friction_pushes_with_its_power_over_the_speed_of_the_line() -> None:
+    kinematics, speed_m_s = panda_kinematics(), 1e-4
+    pose = kinematics.tool_pose(JOINTS)
+    lower = RigidTransform(xyz=pose.xyz + speed_m_s * DOWN, xyzw=pose.xyzw)
+    line = plan_line(kinematics, JOINTS, lower, duration_s=1.0)
+    moved_rad = np.abs(line.position_rad[-1] - JOINTS)
+    power = float(np.array(kinematics.model.friction.coulomb_nm) @ moved_rad)
+    assert friction_push_n(kinematics, JOINTS, DOWN) == pytest.approx(power / speed_m_s, rel=0.01)
+    assert power / speed_m_s > 1.0
+
+
+def test_of_a_peak_only_what_friction_leaves_is_for_the_speed() -> None:
+    whole = touch_speed_m_s(5.0, peak_n=10.0, surface_n_m=45000.0)
+    assert touch_speed_m_s(5.0, peak_n=10.0, surface_n_m=45000.0, friction_n=4.0) == pytest.approx(0.6 * whole)

@@ -6,6 +6,7 @@ import pytest
 
 from engine.errors import Cause
 from engine.skills import identification
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.identification import FrictionEstimate, JointFrictionEstimate, PayloadEstimate
 from engine.state import Outcome
@@ -61,3 +62,16 @@ async def test_a_failure_gives_the_reason_and_no_outputs(state: IdentifyPayload 
     assert outcome.cause is not None
     assert outcome.cause.chain()[-1] == LOST
     assert state.resources() == ("left",)
+
+
+async def test_both_pass_on_what_may_be_touched() -> None:
+    fixture = CollisionOptions(may_touch=("fixture",))
+    ctx = weighed()
+    await IdentifyPayload(robot="left", collisions=fixture).run(ctx)
+    joints = GoalEnd(GoalStatus.SUCCEEDED, FrictionEstimate(joints=(), samples=600), None)
+    other = FakeContext({"left/identify_friction": joints})
+    await IdentifyFriction(robot="left", collisions=fixture).run(other)
+    assert [*ctx.sent, *other.sent] == [
+        ("left/identify_payload", identification.IdentifyPayload(collisions=fixture)),
+        ("left/identify_friction", identification.IdentifyFriction(collisions=fixture)),
+    ]

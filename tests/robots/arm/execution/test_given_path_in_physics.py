@@ -239,3 +239,29 @@ async def test_an_arm_stops_before_another_one_that_gets_into_its_path(
             assert "left/" in why
             assert "would touch right/" in why
             assert opened.speed_rad_s() < REST_RAD_S
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("patience_s", [nightly(0.0), 20.0])
+async def test_of_two_arms_that_move_towards_one_another_only_the_later_one_stops(
+    tmp_path: Path, patience_s: float
+) -> None:
+    """The first one has reserved its path; a patient later one goes on once it is free."""
+    async with free_cell(tmp_path) as opened:
+        await go(opened, FAR_THERE)
+        first = opened.bus.send_goal(JointTrapVel(joints=FAR_MIDDLE, speed=0.1), to="left")
+        await opened.until(lambda: opened.speed_rad_s() > 0.02)
+        later = JointTrapVel(joints=FAR_MIDDLE, speed=0.1, collisions=CollisionOptions(patience_s=patience_s))
+        second = opened.bus.send_goal(later, to="right")
+        touched: set[str] = set()
+        await opened.until(lambda: touched.add(opened.touching()) or first.finished, within_s=30.0)
+        assert (await first.result()).status is GoalStatus.SUCCEEDED
+        if patience_s:
+            await opened.until(lambda: opened.speed_rad_s("right") < REST_RAD_S)
+            assert not second.finished
+            end, why, _ = await end_of(opened, JointTrapVel(joints=FAR_THERE, speed=0.4))
+            assert end.status is GoalStatus.SUCCEEDED, why
+        end = await second.result()
+        why = describe_cause(end.cause) if end.cause else ""
+        assert (end.status, touched) == (GoalStatus.SUCCEEDED if patience_s else GoalStatus.ABORTED, {""}), why
+        assert patience_s or ("would touch left/" in why and "on its planned path" in why), why

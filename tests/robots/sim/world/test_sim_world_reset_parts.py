@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from engine.bus import Holder, SkillBus
@@ -33,6 +34,23 @@ def test_a_part_that_fell_is_back_where_it_began() -> None:
             assert answer.parts == ("dropped",)
             await bus.clock.sleep(0.01)
             return fallen_m, part_xyz(world, "dropped")[2]
+
+    fallen_m, again_m = run_virtual(main())
+    assert (fallen_m < 0.1, again_m) == (True, pytest.approx(0.5, abs=0.002))
+
+
+def test_a_body_that_nobody_knows_of_is_reset_too_and_stays_unnamed() -> None:
+    async def main() -> tuple[float, float]:
+        scene = msgspec.structs.replace(two_arms(), unknown_parts=(box("stray", (0.0, 0.4, 0.5)),))
+        async with opened(scene) as world:
+            bus = SkillBus(new_clock())
+            world.register(bus)
+            await bus.clock.sleep(1.0)
+            fallen_m = part_xyz(world, "stray")[2]
+            answer = await bus.call(ResetParts(), to="cell")
+            assert answer.parts == ()
+            await bus.clock.sleep(0.01)
+            return fallen_m, part_xyz(world, "stray")[2]
 
     fallen_m, again_m = run_virtual(main())
     assert (fallen_m < 0.1, again_m) == (True, pytest.approx(0.5, abs=0.002))
