@@ -48,7 +48,7 @@ import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
-import { BlockedPathsLine } from '../features/robots/BlockedPaths'
+import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useBehavior } from './useBehavior'
@@ -294,7 +294,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
             commands={commands}
             onShow={show}
             onFailure={showFailure}
-            notices={<BlockedPathsLine />}
+            notices={<BlockedPaths isLine />}
           />
         </ViewBoundary>
         <ViewBoundary name="Timeline">
