@@ -13,7 +13,7 @@ from typing import Literal
 import viser
 
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
-from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
+from editor_web.cell_view.rendering.transforms import WorldPose, is_visible_change, poses_by_frame
 from editor_web.cell_view.rendering.viser_gateway import PAGE, ROLE
 from editor_web.security.authentication import OPERATOR
 from engine.messages import FramePoses
@@ -109,7 +109,9 @@ class DragHandles:
             # Sent atomically: viser sends a node as visible first, and a press before the callback is set is lost.
             with client.handle.atomic():
                 client.control = _new_control(client, given, pose, self._pulled)
-        elif not client.is_held and pose != client.placed:
+        elif client.is_held or not is_visible_change(client.placed, pose):
+            return
+        else:
             client.control.position, client.control.wxyz = pose.xyz, pose.wxyz
         client.placed = pose
 

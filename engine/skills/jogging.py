@@ -84,13 +84,14 @@ class JogReady(Message, frozen=True, kw_only=True):
 class JogBlock(Message, frozen=True, kw_only=True):
     """What a jog of an arm stands before: two bodies, by name, and their distance in metres; empty when nothing does.
 
-    `directions_out` are the directions of the jog, in its axes, that take the two apart.
+    `directions_out` are the directions of the jog, in its axes, that take the two apart. Both follow the names:
+    `distance_m` is None until they are measured.
     """
 
     robot: str
     first: str = ""
     second: str = ""
-    distance_m: float = 0.0
+    distance_m: float | None = None
     directions_out: tuple[JogDirection, ...] = ()
 
 

@@ -35,9 +35,10 @@ _GONE = """(index) => { window.pads[index] = null; dispatchEvent(new Event('game
 def teaching(
     browser: Browser, site: TeachSite, *, scheme: Scheme = "light", size: tuple[int, int] = LAPTOP, quiet: bool = True
 ) -> Generator[Page]:
-    """Open the page, which knows the arm."""
+    """Open the page, which knows the arm and has prepared it for jogging: a press before that moves nothing."""
     with opened_page(browser, site.running, "/teach", scheme=scheme, size=size, quiet=quiet) as page:
         expect(page.get_by_role("status", name="State of left").first).to_have_text("idle")
+        expect(page.get_by_role("button", name="Z plus", exact=True)).not_to_have_attribute("aria-disabled", "true")
         yield page
 
 

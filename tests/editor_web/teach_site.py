@@ -43,7 +43,7 @@ CELL = """\
 flexcell: 1
 cell: taught
 store: {kind: sqlite, path: cell.db}
-world: {kind: mujoco, step_s: 0.002, realism: ideal, engine_silence_s: 20, world_silence_s: 20}
+world: {kind: mujoco, step_s: 0.002, engine_silence_s: 20, world_silence_s: 20}
 robots:
   left:
     model: panda

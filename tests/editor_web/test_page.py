@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, contextmanager
@@ -19,6 +20,14 @@ from tests.tiers import nightly
 
 # Longer than any test: what is active stays so.
 LASTING_S = 3600.0
+BRIGHTEST = """async (png) => {
+    const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(png), (each) => each.charCodeAt(0))]))
+    const drawn = new OffscreenCanvas(picture.width, picture.height).getContext('2d')
+    drawn.drawImage(picture, 0, 0)
+    return drawn.getImageData(1, 1, picture.width - 2, picture.height - 2).data.reduce(
+        (most, value, at) => (at % 4 === 3 ? most : Math.max(most, value)), 0)
+}"""
+"""Of a picture, without its rim: the greatest value of a colour."""
 Visit = Callable[..., AbstractContextManager[Page]]
 
 
@@ -222,3 +231,22 @@ def test_the_cell_is_drawn_in_three_dimensions(visit: Visit, tmp_path: Path, loo
         panels = cell.locator("[data-testid=floating-panel], .mantine-Paper-root").filter(visible=True)
         expect(panels).to_have_count(0)
         context.close()
+
+
+def test_the_view_is_dark_in_the_dark_theme_before_it_has_loaded(
+    tmp_path: Path, loopback: str, browser: Browser
+) -> None:
+    """What is seen through a document that says nothing yet, as the loading one does."""
+    folder = tmp_path / "cell"
+    folder.mkdir()
+    with (
+        Site(host=loopback, folder=folder, cell_view=True) as site,
+        opened_page(browser, site.running, "/teach", scheme="dark") as page,
+    ):
+        page.context.route("**/cell/**", lambda route: route.fulfill(body="<html></html>", content_type="text/html"))
+        page.goto(site.running.url)
+        frame = page.get_by_title("3D view of the cell")
+        expect(frame).to_be_visible()
+        expect(page.frame_locator("[title='3D view of the cell']").locator("body")).to_be_attached()
+        brightest: int = page.evaluate(BRIGHTEST, base64.b64encode(frame.screenshot()).decode())
+    assert brightest < 64

@@ -13,7 +13,7 @@ from editor_web.cell_view.rendering.canvas import CELL, Canvas
 from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry, colour_of, corners
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
-from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
+from editor_web.cell_view.rendering.transforms import WorldPose, is_visible_change, poses_by_frame
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, SceneDescription
 from engine.skills.jogging import JogBlock
@@ -114,7 +114,10 @@ class BodyLayer:
             self._frames.setdefault(name, []).append(handle)
 
     def _move(self, poses: Mapping[str, WorldPose]) -> None:
-        moved = [(n, pose) for n, pose in poses.items() if n in self._frames and self._drawn.get(n) != pose]
+        # Compared with what was drawn last, not with the last message: a slow motion arrives too.
+        moved = [
+            (n, pose) for n, pose in poses.items() if n in self._frames and is_visible_change(self._drawn.get(n), pose)
+        ]
         if not moved:
             return
         with self._server.atomic():

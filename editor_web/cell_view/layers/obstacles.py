@@ -14,7 +14,13 @@ from editor_web.cell_view.rendering.convex_shapes import add_convex_shape
 from editor_web.cell_view.rendering.geometry import Rgb
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
-from editor_web.cell_view.rendering.transforms import WorldPose, matrix_of_pose, pose_of_matrix, poses_by_frame
+from editor_web.cell_view.rendering.transforms import (
+    WorldPose,
+    is_visible_change,
+    matrix_of_pose,
+    pose_of_matrix,
+    poses_by_frame,
+)
 from engine.messages import FramePoses, Pose, SceneDescription
 from engine.messages.shapes import Obstacle, Solid
 from engine.skills.jogging import JogBlock
@@ -50,6 +56,7 @@ class ObstacleLayer:
         self._drawn: _Shown | None = None
         self._roots: list[viser.FrameHandle] = []
         self._held: list[tuple[HeldPart, viser.FrameHandle]] = []
+        self._carried: dict[str, WorldPose] = {}
         self._poses: FramePoses | None = None
 
     def draw(self, latest: LatestMessages) -> None:
@@ -73,7 +80,7 @@ class ObstacleLayer:
     def _build(self, shown: _Shown) -> None:
         for root in self._roots:
             root.remove()
-        self._roots = []
+        self._roots, self._carried = [], {}
         for each in shown.obstacles:
             colour = _BLOCKING if each.name in shown.blocking else _OBSTACLE
             self._add(each.name, each.solids, each.pose, colour)
@@ -101,9 +108,12 @@ class ObstacleLayer:
             for part, root in self._held:
                 link = poses.get(f"{part.robot}/{part.link}", poses.get(part.link))
                 root.visible = link is not None
-                if link is not None:
-                    now = pose_of_matrix(matrix_of_pose(link) @ matrix_of_pose(part.pose))
+                if link is None:
+                    continue
+                now = pose_of_matrix(matrix_of_pose(link) @ matrix_of_pose(part.pose))
+                if is_visible_change(self._carried.get(part.name), now):
                     root.position, root.wxyz = now.xyz, now.wxyz
+                    self._carried[part.name] = now
 
 
 def _shown(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -12,6 +13,8 @@ from engine.messages import FramePoses, Pose, Quaternion, Vector3
 
 Matrix = NDArray[np.float64]
 Wxyz = tuple[float, float, float, float]
+# Less than this nobody sees, and an arm that holds itself by noisy encoders never rests.
+_VISIBLE_M, _VISIBLE_RAD = 2e-4, 2e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +42,15 @@ def poses_by_frame(poses: FramePoses | None) -> Mapping[str, WorldPose]:
         return {}
     rows = zip(poses.names, poses.xyz, poses.xyzw, strict=True)
     return {name: WorldPose(xyz=xyz, xyzw=xyzw) for name, xyz, xyzw in rows}
+
+
+def is_visible_change(before: WorldPose | None, now: WorldPose) -> bool:
+    """Whether a pose differs visibly from the drawn one: never by the noise of an arm that rests."""
+    if before is None or math.dist(before.xyz, now.xyz) > _VISIBLE_M:
+        return True
+    # For small angles the chord of two unit quaternions is half the angle; `q` and `-q` are one rotation.
+    chord = min(math.dist(before.xyzw, now.xyzw), math.dist(before.xyzw, [-value for value in now.xyzw]))
+    return 2.0 * chord > _VISIBLE_RAD
 
 
 def rotation(xyzw: Quaternion) -> Matrix:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -27,6 +27,8 @@ ToJoints = Callable[[Array, Array], Array]
 
 # Period of the checks, greatest age of a result when it takes effect, and timeout of a check.
 _CHECK_PERIOD_S, _REACTION_S, _TIMEOUT_S = 0.03, 0.12, 0.3
+# Timeout of a search for the directions out, which ends for another direction of the jog.
+_SEARCH_TIMEOUT_S = 1.0
 _STEP_S, _LONGEST_S = 0.01, 3.0
 # Share of the acceleration limits with which a jog decelerates (0.5, less for its jerk), and of the free path used.
 _BRAKING_SHARE, _USED_SHARE = 0.4, 0.9
@@ -164,13 +166,29 @@ class JogGuard:
             and np.abs(joints - self._published[1]).max() < _SAME_PLACE_RAD
         ):
             return
+        self._publish(JogBlock(robot=name, first=pair[0], second=pair[1]))
+        block = await self._search(pair)
+        if block is None:
+            # The next check tries again.
+            self._published = None
+            return
         self._published = pair, joints
+        self._publish(block)
+
+    async def _search(self, pair: NamePair) -> JogBlock | None:
+        """Return a block with its directions out; None if they are not found in time, or another one is commanded."""
+        search = asyncio.create_task(self._directions_out.find(self._scene, pair))
+        recheck = asyncio.create_task(self._recheck.wait())
         try:
-            async with asyncio.timeout(_TIMEOUT_S):
-                self._publish(await self._directions_out.find(self._scene, pair))
-        except (TimeoutError, FlexcellError) as error:
-            _log.warning("%s: the ways out are not known: %s", name, error)
-            self._publish(JogBlock(robot=name, first=pair[0], second=pair[1]))
+            await asyncio.wait((search, recheck), timeout=_SEARCH_TIMEOUT_S, return_when=asyncio.FIRST_COMPLETED)
+            return search.result() if search.done() else None
+        except FlexcellError as error:
+            _log.warning("%s: the directions out are not known: %s", self._runner.name, error)
+            return None
+        finally:
+            search.cancel()
+            recheck.cancel()
+            await asyncio.wait((search, recheck))
 
     async def _check(self, commanded: Array) -> tuple[float, str, NamePair | None]:
         """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""
@@ -192,8 +210,14 @@ class JogGuard:
         return (
             float(np.linalg.norm(commanded)) * share,
             describe_contacts(check.pairs),
-            check.pairs[0] if check.pairs else None,
+            self._pair_of(check.pairs),
         )
+
+    def _pair_of(self, pairs: Sequence[NamePair]) -> NamePair | None:
+        """Return the pair to tell: that of before while it is among them, as both fingers of a hand are in turn."""
+        if self._published is not None and self._published[0] in pairs:
+            return self._published[0]
+        return pairs[0] if pairs else None
 
     def _ahead(self, commanded: Array) -> tuple[JointTrajectory, Array, float]:
         """Return the predicted trajectory: the arm follows `commanded` until the next check takes effect, then stops.

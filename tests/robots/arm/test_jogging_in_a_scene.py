@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus, SkillBus
-from engine.errors import SkillFailed
+from engine.errors import RobotError, SkillFailed
 from engine.messages import GripperState, Pose, Vector3
 from engine.messages.shapes import Box, Obstacle
 from engine.skill import Action
@@ -26,6 +26,9 @@ from engine.skills.jogging import (
 )
 from engine.skills.motion import ForwardKinematics
 from engine.skills.planning_scene import AttachPart, CheckCollision, CollisionReport, PutObstacle, RemoveObstacle
+from robots.arm.jogging.directions_out import DirectionsOut
+from robots.arm.scene_queries.scene_check import SceneCheck
+from robots.planning.scene.planning_scene import NamePair
 from robots.port import GraspCommand
 from tests.robots.arm.simulated import Simulated, simulated
 from tests.robots.fake_port import FakeStream
@@ -223,6 +226,32 @@ async def test_a_block_names_both_bodies_their_distance_and_the_ways_that_take_t
         away = JogTool(velocity=(0.0, -0.1, 0.0, 0.0, 0.0, 0.0), duration_s=0.4)
         await cell.bus.send_goal(away, to="left").result()
         assert blocks.latest == JogBlock(robot="left")
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("fails", [False, True])
+async def test_a_block_has_no_distance_until_it_is_measured(fails: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both bodies are named at once, and no distance or absence of a direction out is claimed."""
+    find = DirectionsOut.find
+
+    async def fail_once(self: DirectionsOut, scene: SceneCheck, pair: NamePair) -> JogBlock:
+        monkeypatch.setattr(DirectionsOut, "find", find)
+        raise RobotError("the planner is busy", where="left")
+
+    if fails:
+        monkeypatch.setattr(DirectionsOut, "find", fail_once)
+    async with fake_cell() as cell:
+        x, y, z = (await cell.bus.call(ForwardKinematics(), to="left")).xyz
+        await cell.bus.call(put("wall", (0.6, 0.02, 0.6), (x, y + 0.164, z)), to="cell")
+        told: list[JogBlock] = []
+        cell.bus.topic("left/jog_block", JogBlock).subscribe(told.append)
+        goal = JogTool(velocity=(0.0, 0.25, 0.0, 0.0, 0.0, 0.0), duration_s=0.4)
+        assert (await cell.bus.send_goal(goal, to="left").result()).status is GoalStatus.SUCCEEDED
+    first, *_, last = [block for block in told if block.first]
+    assert first == JogBlock(robot="left", first=first.first, second="wall")
+    assert (last.first, last.second) == (first.first, "wall")
+    assert last.distance_m is not None
+    assert last.directions_out
 
 
 @pytest.mark.virtual

@@ -1198,7 +1198,7 @@ export interface JogBlockFrame {
   readonly robot: string
   readonly first: string
   readonly second: string
-  readonly distance_m: number
+  readonly distance_m: number | null
   readonly directions_out: readonly JogDirection[]
 }
 

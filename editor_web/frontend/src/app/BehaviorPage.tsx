@@ -48,7 +48,7 @@ import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
-import { BlockedPathsLine } from '../features/robots/BlockedPaths'
+import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useBehavior } from './useBehavior'
@@ -283,62 +283,61 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
       <ViewBoundary name="Adapt">
         <AdaptHere behavior={behavior.id} obstacle={behavior.fit.obstacle} mayEdit={mayOperate} onMade={onMade} />
       </ViewBoundary>
-      <ViewBoundary name="Interrupted run">
-        <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
-      </ViewBoundary>
-      <ViewBoundary name="Run control">
-        <RunBar run={run} commands={commands} hasKeys />
-      </ViewBoundary>
-      <ViewBoundary name="Status">
-        <StatusRow
-          run={run}
-          root={behavior.graph}
-          commands={commands}
-          onShow={show}
-          onFailure={showFailure}
-          notices={<BlockedPathsLine />}
-        />
-      </ViewBoundary>
-      <ViewBoundary name="Timeline">
-        <PastLine run={run} hasCellView={hasView} />
-      </ViewBoundary>
-      <div className={classes.refusal}>
-        <RefusalLine />
-      </div>
-      {isNarrow ? (
-        <OpenedTabs
-          label="Views"
-          bodies={{
-            Start: parameters,
-            Graph: <NarrowGraph graph={graph} card={card} />,
-            Cell: cell,
-            ...dock.all,
-            Outline: outline,
-            Breakpoints: held,
-            Problems: problems,
-          }}
-        />
-      ) : (
-        <Wide
-          arrangement={arrangement}
-          graph={graph}
-          course={<OpenedTabs label="Course of the run" bodies={dock.course} isDock asked={askedTab} />}
-          records={<OpenedTabs label="Records of the run" bodies={dock.records} isDock />}
-          cell={cell}
-          tabs={
-            <SideTabs
-              tab={tab}
-              onTab={setTab}
-              counts={{ holds, problems: behavior.findings.length }}
-              bodies={
-                arrangement === 'debug'
-                  ? { parameters, node: nodeTab, outline, holds: held, problems }
-                  : { parameters, node: nodeTab, log: dock.all.Log, failure: dock.all.Failure, problems }
-              }
-            />
-          }
-        />
-      )}
+      <InterruptedHere behavior={behavior.name} onResumed={onStarted}>
+        <ViewBoundary name="Run control">
+          <RunBar run={run} commands={commands} hasKeys />
+        </ViewBoundary>
+        <ViewBoundary name="Status">
+          <StatusRow
+            run={run}
+            root={behavior.graph}
+            commands={commands}
+            onShow={show}
+            onFailure={showFailure}
+            notices={<BlockedPaths isLine />}
+          />
+        </ViewBoundary>
+        <ViewBoundary name="Timeline">
+          <PastLine run={run} hasCellView={hasView} />
+        </ViewBoundary>
+        <div className={classes.refusal}>
+          <RefusalLine />
+        </div>
+        {isNarrow ? (
+          <OpenedTabs
+            label="Views"
+            bodies={{
+              Start: parameters,
+              Graph: <NarrowGraph graph={graph} card={card} />,
+              Cell: cell,
+              ...dock.all,
+              Outline: outline,
+              Breakpoints: held,
+              Problems: problems,
+            }}
+          />
+        ) : (
+          <Wide
+            arrangement={arrangement}
+            graph={graph}
+            course={<OpenedTabs label="Course of the run" bodies={dock.course} isDock asked={askedTab} />}
+            records={<OpenedTabs label="Records of the run" bodies={dock.records} isDock />}
+            cell={cell}
+            tabs={
+              <SideTabs
+                tab={tab}
+                onTab={setTab}
+                counts={{ holds, problems: behavior.findings.length }}
+                bodies={
+                  arrangement === 'debug'
+                    ? { parameters, node: nodeTab, outline, holds: held, problems }
+                    : { parameters, node: nodeTab, log: dock.all.Log, failure: dock.all.Failure, problems }
+                }
+              />
+            }
+          />
+        )}
+      </InterruptedHere>
       <ChangeReport commands={commands} />
       {isStartAsked && (
         <ViewBoundary name="Start here">

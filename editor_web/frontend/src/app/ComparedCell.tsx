@@ -9,7 +9,7 @@ import { Notice } from '../components/Notice'
 import { alignedMoment } from '../document/comparison'
 import { CellFrame } from '../features/cell/CellFrame'
 
-interface ComparedCellProps {
+export interface ComparedProps {
   readonly left: string
   readonly right: string
   /** Undefined aligns the runs at their starts. */
@@ -21,7 +21,7 @@ interface ComparedCellProps {
 
 const STEPS = 200
 
-export function ComparedCell({ left, right, visit, durationS, cursorS = 0, onGo }: ComparedCellProps) {
+export function ComparedCell({ left, right, visit, durationS, cursorS = 0, onGo }: ComparedProps) {
   const [hasGhost, setHasGhost] = useState(true)
   const isServed = useSession((s) => hasCellView(s.session))
   const problem = usePast((s) => s.shown?.ghost_problem ?? '')

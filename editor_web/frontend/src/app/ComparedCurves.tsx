@@ -1,22 +1,12 @@
 /** Recorded curves of two runs over one another, aligned at the start of a visit. */
 import { useMemo } from 'react'
 import { recordingSubject, runSubject } from '../api/timeline'
-import type { AlignedVisit } from '../api/types'
 import type { Side } from '../document/comparison'
 import { RecordedPlots } from '../features/plots/RecordedPlots'
+import type { ComparedProps } from './ComparedCell'
 import { isRecordingName } from './route'
 
-interface ComparedCurvesProps {
-  readonly left: string
-  readonly right: string
-  /** Undefined aligns the runs at their starts. */
-  readonly visit: AlignedVisit | undefined
-  readonly durationS: number
-  readonly cursorS: number | undefined
-  readonly onGo: (timeS: number) => void
-}
-
-export function ComparedCurves({ left, right, visit, durationS, cursorS, onGo }: ComparedCurvesProps) {
+export function ComparedCurves({ left, right, visit, durationS, cursorS, onGo }: ComparedProps) {
   const sources = useMemo(() => {
     const sourceOf = (side: Side, name: string) => {
       const startS = visit ? visit[side]?.start_s : 0

@@ -38,46 +38,47 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
       </Panel>
       <Panel title="Latest runs" tools={<RunTools mayOperate={role === 'operator'} />}>
         {role === 'operator' && <TourInvitation />}
-        <InterruptedHere onResumed={onOpenRun} />
-        {runs.length === 0 ? (
-          role !== '' && <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
-        ) : (
-          <Box style={{ overflowX: 'auto' }} role="region" tabIndex={0} aria-label="Table of the latest runs">
-            <Table verticalSpacing={7} highlightOnHover miw={420}>
-              <Table.Thead>
-                <Table.Tr>
-                  <Table.Th>Behavior</Table.Th>
-                  <Table.Th w={110}>State</Table.Th>
-                  <Table.Th>Started</Table.Th>
-                  <Table.Th>Duration</Table.Th>
-                </Table.Tr>
-              </Table.Thead>
-              <Table.Tbody>
-                {runs.slice(0, 20).map((run) => (
-                  <Table.Tr key={run.id}>
-                    <Table.Td>
-                      <PageLink href={runHref(run.id)} onOpen={() => onOpenRun(run.id)}>
-                        {nameOf(run.behavior)}
-                      </PageLink>
-                      {run.cause && (
-                        <Text fz="0.78rem" maw="40ch" c="var(--quiet)">
-                          {run.cause}
-                        </Text>
-                      )}
-                    </Table.Td>
-                    <Table.Td>
-                      <RunBadge run={run} />
-                    </Table.Td>
-                    <Table.Td>{startTime(run, runs)}</Table.Td>
-                    <Table.Td>
-                      <RunTime run={run} />
-                    </Table.Td>
+        <InterruptedHere onResumed={onOpenRun}>
+          {runs.length === 0 ? (
+            role !== '' && <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
+          ) : (
+            <Box style={{ overflowX: 'auto' }} role="region" tabIndex={0} aria-label="Table of the latest runs">
+              <Table verticalSpacing={7} highlightOnHover miw={420}>
+                <Table.Thead>
+                  <Table.Tr>
+                    <Table.Th>Behavior</Table.Th>
+                    <Table.Th w={110}>State</Table.Th>
+                    <Table.Th>Started</Table.Th>
+                    <Table.Th>Duration</Table.Th>
                   </Table.Tr>
-                ))}
-              </Table.Tbody>
-            </Table>
-          </Box>
-        )}
+                </Table.Thead>
+                <Table.Tbody>
+                  {runs.slice(0, 20).map((run) => (
+                    <Table.Tr key={run.id}>
+                      <Table.Td>
+                        <PageLink href={runHref(run.id)} onOpen={() => onOpenRun(run.id)}>
+                          {nameOf(run.behavior)}
+                        </PageLink>
+                        {run.cause && (
+                          <Text fz="0.78rem" maw="40ch" c="var(--quiet)">
+                            {run.cause}
+                          </Text>
+                        )}
+                      </Table.Td>
+                      <Table.Td>
+                        <RunBadge run={run} />
+                      </Table.Td>
+                      <Table.Td>{startTime(run, runs)}</Table.Td>
+                      <Table.Td>
+                        <RunTime run={run} />
+                      </Table.Td>
+                    </Table.Tr>
+                  ))}
+                </Table.Tbody>
+              </Table>
+            </Box>
+          )}
+        </InterruptedHere>
       </Panel>
     </Box>
   )

@@ -1,5 +1,5 @@
 /** The page of all runs: a card for each, commands to one of them, and two to be compared. */
-import { act, screen, waitFor, within } from '@testing-library/react'
+import { act, screen, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
 import { asks, control, graphNode, live, node, run, server, show, snapshot } from '../../testing/page'
 import { FakeSocket, Refusal } from '../../testing/server'
@@ -27,9 +27,10 @@ function follow(of: RunView, told: Partial<LiveSnapshot>): FakeSocket {
 }
 
 /** All three runs, as the server tells of them. */
-function shown(): ReturnType<typeof show> {
+async function shown(): Promise<ReturnType<typeof show>> {
   live({ runs: OPEN })
   const user = show(<RunsPage onOpen={opened} />)
+  await screen.findAllByRole('article')
   follow(NAP, { nodes: { root: node(), 'root/only': node() } })
   follow(SHIFT, { control: control({ waiting: [ASKS], autonomy: 'low' }), nodes: { root: node(), 'root/left': node() } })
   follow(NIGHT, {
@@ -55,7 +56,7 @@ beforeEach(() => {
 })
 
 it('tells on each card of its own run', async () => {
-  shown()
+  await shown()
   server()
     .socket('/data')
     .tell({
@@ -79,7 +80,7 @@ it('tells on each card of its own run', async () => {
 
 it('sends a command on a card to that run only', async () => {
   for (const path of ['r1/control/pause', 'r2/control/answer', 'r3/stop']) server().on(`POST /runs/${path}`, {})
-  const user = shown()
+  const user = await shown()
   await user.click(card('nap').getByRole('button', { name: 'Pause' }))
   await user.click(card('shift').getByRole('button', { name: 'Agree: a' }))
   await user.click(card('night').getByRole('button', { name: 'Stop' }))
@@ -89,13 +90,13 @@ it('sends a command on a card to that run only', async () => {
 
 it('names the run in a refusal', async () => {
   server().on('POST /runs/r2/control/answer', new Refusal(409, { message: 'this node asks nothing' }))
-  const user = shown()
+  const user = await shown()
   await user.click(card('shift').getByRole('button', { name: 'Agree: a' }))
   expect(await screen.findByRole('alert')).toHaveTextContent('shift: Agree was refused: this node asks nothing')
 })
 
 it('lets a card take no command while its connection is lost', async () => {
-  shown()
+  await shown()
   const socket = FakeSocket.opened.find((each) => each.sent.some((sent) => (sent as { run?: string }).run === 'r1'))
   socket?.cut()
   expect(card('nap').getByRole('button', { name: 'Pause' })).toHaveAttribute('title', 'Not possible: the server does not answer')
@@ -103,9 +104,10 @@ it('lets a card take no command while its connection is lost', async () => {
   await act(() => Promise.resolve())
 })
 
-it('tells a viewer of every run, and why each command is not for them', () => {
+it('tells a viewer of every run, and why each command is not for them', async () => {
   live({ runs: OPEN }, 'viewer')
   show(<RunsPage onOpen={opened} />)
+  await screen.findAllByRole('article')
   const socket = follow(SHIFT, {})
   socket.tell({ k: 'hello', version: 1, epoch: 'e1', role: 'viewer', server_time_s: 1000 })
   socket.tell(snapshot({ run: 'r2', runs: OPEN, control: control({ waiting: [ASKS, { ...ASKS, path: 'root/right' }] }) }))
@@ -120,7 +122,7 @@ it('tells a viewer of every run, and why each command is not for them', () => {
 })
 
 it('operates one run at a time', async () => {
-  const user = shown()
+  const user = await shown()
   const page = FakeSocket.opened[0]
   await user.click(card('nap').getByRole('button', { name: 'Take control' }))
   expect(card('nap').getByText(/^You operate this run/)).toBeVisible()
@@ -135,7 +137,7 @@ it('operates one run at a time', async () => {
 })
 
 it('shows two runs side by side, once two are selected', async () => {
-  const user = shown()
+  const user = await shown()
   const aside = screen.getByRole('button', { name: 'Side by side' })
   await user.click(aside)
   expect(screen.getByRole('alert')).toHaveTextContent('tick Compare at two runs first')
@@ -147,7 +149,7 @@ it('shows two runs side by side, once two are selected', async () => {
 })
 
 it('opens a run by its name', async () => {
-  const user = shown()
+  const user = await shown()
   await user.click(card('night').getByRole('link', { name: 'night' }))
   expect(opened.mock.calls).toEqual([['/runs/r3']])
 })
@@ -156,7 +158,6 @@ it('says what to do while no run is active', async () => {
   live({ runs: [run({ status: 'stopped', cause: 'enough' })] })
   show(<RunsPage onOpen={opened} />)
   expect(screen.getByText('None is active')).toBeVisible()
-  expect(screen.getByText(/Choose a behavior in the menu and start it/)).toBeVisible()
+  expect(await screen.findByText(/Choose a behavior in the menu and start it/)).toBeVisible()
   expect(screen.getByRole('list', { name: 'Runs that ended last' })).toHaveTextContent('Stopped')
-  await waitFor(() => expect(server().asked.map((each) => each.what)).toContain('GET /interrupted'))
 })

@@ -72,34 +72,35 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
         <RefusalLine />
       </div>
       <Box flex={1} mih={0} bg="var(--ground)" style={{ overflow: 'auto' }}>
-        <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
-        {active.length === 0 ? (
-          <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is active">
-            Choose a behavior in the menu and start it; several go on at once as long as no two need the same arm.
-          </Empty>
-        ) : (
-          <SimpleGrid minColWidth="min(100%, 26rem)" spacing="sm" p="md">
-            {active.map((run) => (
-              <LiveOf key={run.id} run={run.id}>
-                <Card
-                  run={run}
-                  held={leases.filter((lease) => lease.run === run.id).map((lease) => lease.resource)}
-                  isChosen={chosen.includes(run.id)}
-                  onChoose={(isChosen) => choose(run.id, isChosen)}
-                  onOpen={() => onOpen(runHref(run.id))}
-                />
-              </LiveOf>
-            ))}
-          </SimpleGrid>
-        )}
-        {ended.length > 0 && (
-          <section aria-labelledby="ended-runs">
-            <Title order={2} id="ended-runs" mx="md" mt="3xs" mb="2xs" fz="0.82rem" fw={620} c="dimmed">
-              Ended last
-            </Title>
-            <FinishedRuns runs={ended} href={runHref} onOpen={(run) => onOpen(runHref(run))} chosen={chosen} onChoose={choose} />
-          </section>
-        )}
+        <InterruptedHere onResumed={(run) => onOpen(runHref(run))}>
+          {active.length === 0 ? (
+            <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is active">
+              Choose a behavior in the menu and start it; several go on at once as long as no two need the same arm.
+            </Empty>
+          ) : (
+            <SimpleGrid minColWidth="min(100%, 26rem)" spacing="sm" p="md">
+              {active.map((run) => (
+                <LiveOf key={run.id} run={run.id}>
+                  <Card
+                    run={run}
+                    held={leases.filter((lease) => lease.run === run.id).map((lease) => lease.resource)}
+                    isChosen={chosen.includes(run.id)}
+                    onChoose={(isChosen) => choose(run.id, isChosen)}
+                    onOpen={() => onOpen(runHref(run.id))}
+                  />
+                </LiveOf>
+              ))}
+            </SimpleGrid>
+          )}
+          {ended.length > 0 && (
+            <section aria-labelledby="ended-runs">
+              <Title order={2} id="ended-runs" mx="md" mt="3xs" mb="2xs" fz="0.82rem" fw={620} c="dimmed">
+                Ended last
+              </Title>
+              <FinishedRuns runs={ended} href={runHref} onOpen={(run) => onOpen(runHref(run))} chosen={chosen} onChoose={choose} />
+            </section>
+          )}
+        </InterruptedHere>
       </Box>
     </Flex>
   )

@@ -4,23 +4,29 @@ import type { ReactNode } from 'react'
 
 interface RowToolProps {
   readonly label: string
+  /** There is nothing for it to do, which its row shows. */
   readonly isOff?: boolean
+  /** Why it cannot be used now: it stays reachable, and says so. */
+  readonly obstacle?: string | undefined
   readonly size?: ActionIconProps['size']
   readonly onPress: () => void
   readonly children: ReactNode
 }
 
-export function RowTool({ label, isOff = false, size, onPress, children }: RowToolProps) {
+export function RowTool({ label, isOff = false, obstacle, size, onPress, children }: RowToolProps) {
+  const isBlocked = obstacle !== undefined
   return (
     <ActionIcon
       variant="subtle"
       color="gray"
       {...(size !== undefined && { size })}
       aria-label={label}
-      title={label}
+      aria-disabled={isBlocked || undefined}
+      data-disabled={isBlocked}
+      title={isBlocked ? `Not possible: ${obstacle}` : label}
       disabled={isOff}
       {...(isOff && { bg: 'transparent' })}
-      onClick={onPress}
+      onClick={() => !isBlocked && onPress()}
     >
       {children}
     </ActionIcon>

@@ -26,7 +26,9 @@ async function isServerThere(): Promise<boolean> {
  * Put it inside a `ViewBoundary`, which a failed load is thrown to. Nothing suspends: React 19.3 throws where a boundary
  * that waits for code is taken away before the code has come.
  */
-export function lazyView<P extends object>(load: () => Promise<ComponentType<P>>): ComponentType<P> {
+export function lazyView<P extends object>(
+  load: () => Promise<ComponentType<P>>,
+): ComponentType<P> & { readonly load: () => Promise<unknown> } {
   let loading: Promise<ComponentType<P>> | undefined
   let hasFailed = false
   let loaded: ComponentType<P> | undefined
@@ -45,7 +47,7 @@ export function lazyView<P extends object>(load: () => Promise<ComponentType<P>>
     return loading
   }
 
-  return function LazyView(props: P) {
+  function LazyView(props: P) {
     const [Body, setBody] = useState(() => loaded)
     const [failure, setFailure] = useState<{ readonly error: unknown }>()
     const waiting = useContext(WhileLoading)
@@ -63,4 +65,6 @@ export function lazyView<P extends object>(load: () => Promise<ComponentType<P>>
     if (failure) throw failure.error
     return Body ? <Body {...props} /> : waiting
   }
+  // For who shows it only once it can be drawn at once.
+  return Object.assign(LazyView, { load: start })
 }

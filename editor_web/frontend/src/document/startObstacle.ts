@@ -1,8 +1,9 @@
 /** Why a run of a behavior cannot be started now, in words. Pure. */
 import type { BehaviorView, CellStop, RunView, SessionBody } from '../api/types'
+import { isError } from './editing/findings'
 
 export function hasErrors(behavior: Pick<BehaviorView, 'findings'>): boolean {
-  return behavior.findings.some((finding) => finding.severity === 'error')
+  return behavior.findings.some(isError)
 }
 
 export function startObstacle(

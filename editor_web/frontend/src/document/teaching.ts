@@ -197,6 +197,7 @@ export function heldWords(mode: string | undefined, activity: string | undefined
 
 /** What a jogged arm stands before, how near it is, and which of the directions `names` lead out. */
 export function blockWords(block: JogBlockFrame, names: readonly string[]): string {
+  if (block.distance_m === null) return `${block.first} stands before ${block.second}.`
   const millimetres_away = (block.distance_m * 1000).toFixed(1)
   const directions = block.directions_out.map((each) => `${names[each.axis] ?? each.axis + 1} ${each.sign > 0 ? 'plus' : 'minus'}`)
   const out =

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
+import msgspec
 import numpy as np
 import pytest
 import viser
 
 from editor_web.cell_view.layers.bodies import BodyLayer, body_node
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from engine.messages import FramePoses
 from engine.skills.jogging import JogBlock
 from tests.editor_web.fake_sights import description, frames_with_a_person, planned_path, scene_with_a_person
 
@@ -103,6 +107,40 @@ def test_what_is_drawn_once_is_only_moved(server: viser.ViserServer) -> None:
     assert server.scene.get_handle_by_name("/cell/world/0") is table
     assert not np.allclose(fore.position, before)
     assert np.allclose(fore.position, moved.xyz[moved.names.index("left/fore")])
+
+
+def with_arm_at(poses: FramePoses, *, aside_m: float, about_z_rad: float = 0.0) -> FramePoses:
+    """The frames with the fore arm of the left arm so far aside and turned."""
+    row = poses.names.index("left/fore")
+    x, y, z = poses.xyz[row]
+    xyz, xyzw = list(poses.xyz), list(poses.xyzw)
+    xyz[row] = (x + aside_m, y, z)
+    xyzw[row] = (0.0, 0.0, math.sin(about_z_rad / 2), math.cos(about_z_rad / 2))
+    return msgspec.structs.replace(poses, xyz=tuple(xyz), xyzw=tuple(xyzw))
+
+
+def test_a_resting_arm_with_noise_sends_nothing_and_a_slow_motion_arrives(server: viser.ViserServer) -> None:
+    """Noise of 0.05 mm and 0.05 mrad; then steps of 0.01 mm and of 0.01 mrad, each of which nobody sees."""
+    bodies, newest = BodyLayer(server), messages_at(0.0)
+    bodies.draw(newest)
+    rest = with_arm_at(frames_with_a_person(0.0), aside_m=0.0)
+    newest.put("cell", rest)
+    bodies.draw(newest)
+    fore = server.scene.get_handle_by_name("/cell/left.fore")
+    assert isinstance(fore, viser.FrameHandle)
+
+    def drawn_at(poses: FramePoses) -> tuple[float, float]:
+        newest.put("cell", poses)
+        bodies.draw(newest)
+        return float(fore.position[0]), 2.0 * math.asin(float(fore.wxyz[3]))
+
+    drawn = {drawn_at(with_arm_at(rest, aside_m=at * 5e-5, about_z_rad=-at * 5e-5)) for at in (1, -1, 0, -1, 1)}
+    assert len(drawn) == 1
+    start_m, start_rad = drawn.pop()
+    for step in range(101):
+        now_m, now_rad = drawn_at(with_arm_at(rest, aside_m=step * 1e-5, about_z_rad=step * 1e-5))
+        assert now_m - start_m == pytest.approx(step * 1e-5, abs=2.2e-4)
+        assert now_rad - start_rad == pytest.approx(step * 1e-5, abs=2.2e-4)
 
 
 def test_the_first_look_has_the_whole_cell_in_it(server: viser.ViserServer) -> None:

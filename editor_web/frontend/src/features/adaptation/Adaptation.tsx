@@ -7,6 +7,7 @@ import { problemOf, useLastAnswer } from '../../api/queryClient'
 import type { AdaptationBody, AdaptationPlan, FindingView, MappedName } from '../../api/types'
 import { StatusIcon } from '../../components/StatusIcon'
 import { Words } from '../../components/Words'
+import { isError } from '../../document/editing/findings'
 import { statusOf } from '../../document/runState'
 
 export interface AdaptationProps {
@@ -146,7 +147,7 @@ function Open({ plan }: { readonly plan: AdaptationPlan }) {
 }
 
 function countsOf(findings: readonly FindingView[], undecided: number): string {
-  const errors = findings.filter((finding) => finding.severity === 'error').length
+  const errors = findings.filter(isError).length
   const counts = [
     [errors, 'error'],
     [findings.length - errors, 'warning'],

@@ -28,16 +28,15 @@ export function CellFrame() {
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
   return (
-    <Box pos="relative" w="100%" h="100%" data-shows={isPast ? 'past' : 'present'}>
+    <Box pos="relative" w="100%" h="100%" bg="var(--canvas)" data-shows={isPast ? 'past' : 'present'}>
       {/* It has an origin of its own in the place of a sandbox; see decision 0029. With the scheme of its document, which
-          names none, it lets its background through while that loads. */}
+          names none, it lets the box through while that loads: a colour of its own would be that of the light theme. */}
       <Box
         component="iframe"
         display="block"
         w="100%"
         h="100%"
         bd={0}
-        bg="var(--canvas)"
         style={{ colorScheme: 'light' }}
         key={`${scheme}${generation}`}
         ref={frame}

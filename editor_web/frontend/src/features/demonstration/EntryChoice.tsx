@@ -47,7 +47,7 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
               px="xs"
               py={4}
               aria-label={`Add ${KIND_WORDS[entry.kind]} ${entry.name}`}
-              leftSection={<KindIcon kind={entry.kind} />}
+              leftSection={<EntryIcon kind={entry.kind} />}
               label={entry.name}
               rightSection={
                 <Text span size="xs" c="dimmed">
@@ -68,7 +68,7 @@ export function EntryChoice({ entries, onAdd }: EntryChoiceProps) {
   )
 }
 
-export function KindIcon({ kind }: { kind: Kind }) {
+export function EntryIcon({ kind }: { kind: Kind }) {
   const Icon =
     kind === 'joints' || kind === 'pose' ? IconMapPin : kind === 'gripper' || kind === 'action' ? IconArrowsHorizontal : IconRoute
   return <Icon size={15} color="var(--accent)" aria-hidden />

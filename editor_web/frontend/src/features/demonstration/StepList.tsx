@@ -6,7 +6,7 @@ import { KIND_WORDS, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '..
 import { reordered } from '../../document/reorder'
 import classes from './Demonstration.module.css'
 import { RowTool } from '../../components/RowTool'
-import { KindIcon } from './EntryChoice'
+import { EntryIcon } from './EntryChoice'
 
 export interface StepListProps {
   readonly steps: readonly Step[]
@@ -40,7 +40,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
                 <Text span size="xs" c="dimmed" miw="1.2em" aria-hidden>
                   {index + 1}
                 </Text>
-                <KindIcon kind={step.kind} />
+                <EntryIcon kind={step.kind} />
                 <Text span size="sm" truncate flex={1}>
                   {words}
                 </Text>

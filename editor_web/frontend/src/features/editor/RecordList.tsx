@@ -1,8 +1,8 @@
 /** A list of values with fields: one of them is open at a time; they are moved, deleted and added. */
 import { Button, Group, Paper, Stack, UnstyledButton } from '@mantine/core'
-import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
+import { IconPlus } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
-import { RowTool } from '../../components/RowTool'
+import { OrderTools } from '../../components/OrderTools'
 import { reordered } from '../../document/reorder'
 
 interface RecordListProps {
@@ -41,22 +41,16 @@ export function RecordList({ label, items, words, onSet, children }: RecordListP
             >
               {at}: {words(item)}
             </UnstyledButton>
-            <RowTool size={24} label={`Move ${label} ${at} up`} isOff={at === 0} onPress={() => move(at, -1)}>
-              <IconArrowUp size={13} aria-hidden />
-            </RowTool>
-            <RowTool size={24} label={`Move ${label} ${at} down`} isOff={at === items.length - 1} onPress={() => move(at, 1)}>
-              <IconArrowDown size={13} aria-hidden />
-            </RowTool>
-            <RowTool
-              size={24}
-              label={`Delete ${label} ${at}`}
-              onPress={() => {
+            <OrderTools
+              name={`${label} ${at}`}
+              isFirst={at === 0}
+              isLast={at === items.length - 1}
+              onMove={(by) => move(at, by)}
+              onDelete={() => {
                 onSet(items.toSpliced(at, 1))
                 setOpened(CLOSED)
               }}
-            >
-              <IconTrash size={13} aria-hidden />
-            </RowTool>
+            />
           </Group>
           {opened === at && children(at)}
         </Paper>

@@ -20,7 +20,7 @@ import { tags } from '@lezer/highlight'
 import { Box } from '@mantine/core'
 import { useEffect, useRef } from 'react'
 import type { FindingView, FixesBody } from '../../api/types'
-import { problemsOf } from '../../document/editing/findings'
+import { isError, problemsOf } from '../../document/editing/findings'
 import { changeBetween } from '../../document/editing/textChange'
 import { nodeAtLine } from '../../document/editing/textPositions'
 import { typed } from './apply'
@@ -151,7 +151,7 @@ function diagnosticsOf(view: EditorView, findings: readonly FindingView[], fixes
       return {
         from,
         to: Math.min(line.to, from + Math.max(1, word)),
-        severity: finding.severity === 'error' ? ('error' as const) : ('warning' as const),
+        severity: isError(finding) ? ('error' as const) : ('warning' as const),
         message: [finding.message, finding.hint].filter(Boolean).join('\n'),
         source: finding.code,
         actions: fixesOf(fixes, finding).map((fix) => ({

@@ -1,7 +1,7 @@
 /** What the check says of each node and arrow, to be shown there. */
 import { useMemo } from 'react'
 import type { FindingView } from '../../api/types'
-import { problemsOf } from '../../document/editing/findings'
+import { isError, problemsOf } from '../../document/editing/findings'
 import { pathsTo } from '../../document/path'
 import { draftOf, useEditor } from './store'
 
@@ -20,7 +20,7 @@ export function useMark(path: string, inside: boolean): Mark | undefined {
   })
   return useMemo(() => {
     if (!own) return undefined
-    const severity = own.some((finding) => finding.severity === 'error') ? 'error' : 'warning'
+    const severity = own.some(isError) ? 'error' : 'warning'
     return { severity, messages: own.map((finding) => finding.message) }
   }, [own])
 }

@@ -3,6 +3,7 @@ import { wordsOf } from '../../api/client'
 import { conflictOf, documents } from '../../api/documents'
 import { relations } from '../../api/relations'
 import type { ConflictBody, NodeConflict } from '../../api/types'
+import { isError } from '../../document/editing/findings'
 import { newHistory, pushed, replaced } from '../../document/editing/history'
 import { nodeOf, ROOT } from '../../document/editing/model'
 import { nameOfPath, parentPath } from '../../document/path'
@@ -113,7 +114,7 @@ async function takeMerged({ merge, theirs, theirs_hash: hash }: ConflictBody, me
 
 function errorsNow(): readonly string[] {
   return draftOf(editor())
-    .findings.filter((finding) => finding.severity === 'error')
+    .findings.filter(isError)
     .map((finding) => `${finding.path} ${finding.code} ${finding.message}`)
 }
 

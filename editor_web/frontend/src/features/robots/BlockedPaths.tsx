@@ -6,39 +6,38 @@ import { serverNow, useLive } from '../../api/live'
 import { Notice } from '../../components/Notice'
 import { blockedPaths, sinceWords, type BlockedPath } from '../../document/plannedPaths'
 
-export function BlockedPaths() {
-  const robots = useLive((s) => s.robots)
-  const blocked = blockedPaths(robots)
-  return (
-    <div aria-live="polite">
-      {blocked.length > 0 && (
-        <ul className="plain-list" aria-label="Arms with a blocked path">
-          {blocked.map(({ robot, path }) => (
-            <li key={robot}>
-              <Notice icon={<IconBarrierBlock size={18} aria-hidden />}>
-                <Blocked robot={robot} path={path} />
-              </Notice>
-            </li>
-          ))}
-        </ul>
-      )}
-    </div>
-  )
+interface BlockedPathsProps {
+  /** All in one line, which is cut where there is no room and whole in its title. */
+  readonly isLine?: boolean
 }
 
-/** The same in one line, which is cut where there is no room and whole in its title. */
-export function BlockedPathsLine() {
-  const robots = useLive((s) => s.robots)
-  const blocked = blockedPaths(robots)
-  const title = blocked.map(({ robot, path }) => `${robot} waits: ${path.reason}`).join('\n')
+export function BlockedPaths({ isLine = false }: BlockedPathsProps) {
+  const blocked = blockedPaths(useLive((s) => s.robots))
+  const title = isLine ? blocked.map(({ robot, path }) => `${robot} waits: ${path.reason}`).join('\n') : undefined
   return (
     <div aria-live="polite">
       {blocked.length > 0 && (
-        <Text component="ul" inherit truncate m={0} p={0} title={title} c="var(--failed)" aria-label="Arms with a blocked path">
+        <Text
+          component="ul"
+          className="plain-list"
+          inherit
+          truncate={isLine}
+          title={title}
+          {...(isLine && { c: 'var(--failed)' })}
+          aria-label="Arms with a blocked path"
+        >
           {blocked.map(({ robot, path }, at) => (
-            <li key={robot} style={{ display: 'inline' }}>
-              {at > 0 && ' · '}
-              <IconBarrierBlock size={15} aria-hidden style={{ verticalAlign: '-2px' }} /> <Blocked robot={robot} path={path} />
+            <li key={robot} style={isLine ? { display: 'inline' } : undefined}>
+              {isLine ? (
+                <>
+                  {at > 0 && ' · '}
+                  <IconBarrierBlock size={15} aria-hidden style={{ verticalAlign: '-2px' }} /> <Blocked robot={robot} path={path} />
+                </>
+              ) : (
+                <Notice icon={<IconBarrierBlock size={18} aria-hidden />}>
+                  <Blocked robot={robot} path={path} />
+                </Notice>
+              )}
             </li>
           ))}
         </Text>

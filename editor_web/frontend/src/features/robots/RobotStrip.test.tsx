@@ -3,7 +3,7 @@ import { fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { expect, it } from 'vitest'
 import { live, robot, server, show, snapshot } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import { BlockedPaths, BlockedPathsLine } from './BlockedPaths'
+import { BlockedPaths } from './BlockedPaths'
 import { LostCell } from './LostCell'
 import { RobotStrip } from './RobotStrip'
 
@@ -72,10 +72,10 @@ it('lets a viewer, and a page without a server, change nothing', () => {
   expect(arm().getByRole('button', { name: 'Recover' })).toHaveAttribute('title', 'Not possible: the server does not answer')
 })
 
-it.each([BlockedPaths, BlockedPathsLine])('says for what an arm waits and since when; another reason is the same wait', (Shown) => {
+it.each([false, true])('says for what an arm waits and since when; another reason is the same wait', (isLine) => {
   const blocked = (reason: string) => told({ path: { state: 'blocked', reason, length_m: 1, since_s: 940 } })
   const socket = live({ robots: { left: robot({ path: { state: 'moving', reason: '', length_m: 1, since_s: 0 } }) } })
-  show(<Shown />)
+  show(<BlockedPaths isLine={isLine} />)
   expect(screen.queryByRole('list')).toBeNull()
   socket.tell(blocked('left/fore would touch anna/hand'))
   const waiting = screen.getByRole('list', { name: 'Arms with a blocked path' })

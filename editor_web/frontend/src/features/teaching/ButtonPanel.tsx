@@ -5,7 +5,7 @@ import { useState } from 'react'
 import { useDisabledReason, useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 import { buttonFault, keepKeys, useButtonMap, type KeyButton } from './buttonMap'
-import { IconCommand } from './IconCommand'
+import { RowTool } from '../../components/RowTool'
 import { Problem } from './Problem'
 
 export function ButtonPanel() {
@@ -105,7 +105,9 @@ function KeyRow({ keyButton, isPressed, isHeard, onChange, onRemove }: KeyRowPro
       <Text span size="xs" c="dimmed" w="8em">
         {isPressed ? 'pressed' : isHeard ? 'a trigger listens' : 'nobody listens'}
       </Text>
-      <IconCommand label={`Remove ${keyButton.button}`} icon={<IconTrash size={14} aria-hidden />} onPress={onRemove} />
+      <RowTool label={`Remove ${keyButton.button}`} onPress={onRemove}>
+        <IconTrash size={14} aria-hidden />
+      </RowTool>
     </Flex>
   )
 }

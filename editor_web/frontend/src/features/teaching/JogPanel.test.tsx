@@ -170,6 +170,8 @@ it('says what the arm stands before, how near, and which ways lead out, until it
     { axis: 3, sign: -1 },
   ]
   const block = { k: 'block', robot: 'left', first: 'left/panda_hand', second: 'table', distance_m: 0.0062, directions_out }
+  socket.tell({ ...block, distance_m: null, directions_out: [] })
+  expect(state.textContent).toBe('left/panda_hand stands before table.')
   socket.tell(block)
   expect(state).toHaveTextContent('left/panda_hand stands 6.2 mm before table. Directions out: Z plus, RX minus.')
   socket.tell({ ...block, first: '', second: '', directions_out: [] })

@@ -212,7 +212,7 @@ export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
         disabled={off !== undefined}
         onChange={(event) => setWithPad(event.currentTarget.checked)}
       />
-      <Text size="sm" c="dimmed" mih="1.5em" role="status" aria-label="State of jogging">
+      <Text size="sm" c="dimmed" mih="2lh" role="status" aria-label="State of jogging">
         {refusal
           ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}`
           : dropped || stands || heldBy || steps.problem || obstacle || (jog.held ? heldWords(now?.mode, now?.activity) : prepared.fault)}

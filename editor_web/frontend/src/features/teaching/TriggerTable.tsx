@@ -9,7 +9,7 @@ import { teach, triggerDocumentQuery, useDisabledReason, useTeach } from '../../
 import type { Trigger, TriggerStatus } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
-import { IconCommand } from './IconCommand'
+import { RowTool } from '../../components/RowTool'
 import { Problem } from './Problem'
 import { CALLBACK_WORDS, TYPE_WORDS } from './triggerWords'
 import classes from './Triggers.module.css'
@@ -112,18 +112,16 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
                   <Table.Td>{CALLBACK_WORDS[trigger.trig_callback]}</Table.Td>
                   <Table.Td>
                     <Group gap={4} wrap="nowrap">
-                      <IconCommand
-                        label={`Edit ${trigger.trig_name}`}
-                        icon={<IconPencil size={14} aria-hidden />}
-                        obstacle={off}
-                        onPress={() => setEdited({ at, trigger })}
-                      />
-                      <IconCommand
+                      <RowTool label={`Edit ${trigger.trig_name}`} obstacle={off} onPress={() => setEdited({ at, trigger })}>
+                        <IconPencil size={14} aria-hidden />
+                      </RowTool>
+                      <RowTool
                         label={`Remove ${trigger.trig_name}`}
-                        icon={<IconTrash size={14} aria-hidden />}
                         obstacle={off}
                         onPress={() => void keep(all.filter((_, index) => index !== at))}
-                      />
+                      >
+                        <IconTrash size={14} aria-hidden />
+                      </RowTool>
                     </Group>
                   </Table.Td>
                 </Table.Tr>

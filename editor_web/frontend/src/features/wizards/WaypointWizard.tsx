@@ -1,11 +1,11 @@
 /** The waypoints of a motion: taken from the arm one after the other, in order, each with its blend. */
 import { Group, NativeSelect, NumberInput, Stack, UnstyledButton } from '@mantine/core'
-import { IconArrowDown, IconArrowUp, IconFocusCentered, IconTrash } from '@tabler/icons-react'
+import { IconFocusCentered } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { useTeach } from '../../api/teaching'
 import type { WaypointRequest } from '../../api/valueWizard'
 import { CommandButton } from '../../components/CommandButton'
-import { RowTool } from '../../components/RowTool'
+import { OrderTools } from '../../components/OrderTools'
 import { lookup } from '../../document/dict'
 import {
   blendOf,
@@ -183,15 +183,7 @@ function WaypointRow({ at, waypoint, isChosen, isLast, onChoose, onMove, onDelet
         }}
         rightSection="m"
       />
-      <RowTool size={24} label={`Move waypoint ${at} up`} isOff={at === 0} onPress={() => onMove(-1)}>
-        <IconArrowUp size={13} aria-hidden />
-      </RowTool>
-      <RowTool size={24} label={`Move waypoint ${at} down`} isOff={isLast} onPress={() => onMove(1)}>
-        <IconArrowDown size={13} aria-hidden />
-      </RowTool>
-      <RowTool size={24} label={`Delete waypoint ${at}`} onPress={onDelete}>
-        <IconTrash size={13} aria-hidden />
-      </RowTool>
+      <OrderTools name={`waypoint ${at}`} isFirst={at === 0} isLast={isLast} onMove={onMove} onDelete={onDelete} />
     </Group>
   )
 }
