@@ -76,6 +76,7 @@ class FreshLink(Generic[R, C]):
         self.latest: FreshReading[R] | None = None
         """The last reading; assigned by the thread."""
         self.lost_reason = ""
+        self._last_error = ""
         self._listener = listener
         self._loop = asyncio.get_running_loop()
         self._queue: deque[tuple[C, asyncio.Future[float]]] = deque()
@@ -114,7 +115,8 @@ class FreshLink(Generic[R, C]):
         """
         latest, age_s = self.latest, self.age_s()
         if latest is None or self.lost_reason or age_s > self.timing.stale_s:
-            reason = self.lost_reason or f"no fresh reading for {age_s:.2f} s"
+            cause = f"{self._last_error}; " if self._last_error else ""
+            reason = self.lost_reason or f"{cause}no fresh reading for {age_s:.2f} s"
             raise RobotError(reason, where=self.transport.address, hint=self.transport.remedy)
         return latest.value
 
@@ -155,6 +157,7 @@ class FreshLink(Generic[R, C]):
             except LinkError as error:
                 self.transport.close()
                 opened = False
+                self._last_error = str(error)
                 self._fail_all(str(error))
                 if not self._failed_to_start(error, begun_s):
                     self._note_loss(str(error), good_s)
@@ -184,6 +187,7 @@ class FreshLink(Generic[R, C]):
 
     def _deliver(self, reading: FreshReading[R]) -> None:
         self.latest = reading
+        self._last_error = ""
         if self.lost_reason:
             self.lost_reason = ""
             self._post(self._listener.found)

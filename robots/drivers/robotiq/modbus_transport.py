@@ -24,6 +24,11 @@ from robots.drivers.robotiq.robotiq_options import ModbusTcp, RtuOverTcp, Serial
 logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)
 
 
+_QUIET_TIMEOUTS = 2.0
+_MOST_DRAINS = 10
+_DRAINED_BYTES = 256
+
+
 class ModbusTransport:
     """Implements `DeviceTransport` over Modbus.
 
@@ -47,6 +52,7 @@ class ModbusTransport:
         self._timeout_s = timeout_s
         self._trace = trace
         self._client: ModbusSerialClient | ModbusTcpClient | None = None
+        self._failed = False
         # The controller with Modbus TCP has its registers at 0, and the status among the input registers.
         self._at_zero = isinstance(connection, ModbusTcp)
 
@@ -76,6 +82,8 @@ class ModbusTransport:
             raise LinkError(f"cannot connect: {error}") from error
         if not connected:
             raise LinkError("cannot connect")
+        if isinstance(client, ModbusSerialClient) and self._failed:
+            self._drain(client)
 
     def close(self) -> None:
         """Disconnect."""
@@ -111,6 +119,18 @@ class ModbusTransport:
             case ModbusTcp() as socket:
                 return ModbusTcpClient(socket.host, port=socket.port, framer=FramerType.SOCKET, **common)
 
+    def _drain(self, client: ModbusSerialClient) -> None:
+        """Wait until the line is quiet: RTU replies have no number, and a late one would answer the next request."""
+        line: Any = client.socket
+        line.timeout = _QUIET_TIMEOUTS * self._timeout_s
+        for _ in range(_MOST_DRAINS):
+            if not line.read(_DRAINED_BYTES):
+                break
+        else:
+            raise LinkError("the line is never quiet: is another master on it?")
+        line.timeout = self._timeout_s
+        self._failed = False
+
     def _opened(self) -> ModbusSerialClient | ModbusTcpClient:
         if self._client is None:
             raise LinkError("not connected")
@@ -120,6 +140,7 @@ class ModbusTransport:
         try:
             response = request()
         except (OSError, ModbusException, IndexError, ValueError) as error:
+            self._failed = True
             # pymodbus lets IndexError and ValueError of its decoders out where a frame is garbage.
             raise LinkError(f"no valid answer within {self._timeout_s:g} s: {_first_line(error)}") from error
         if response.isError():

@@ -224,6 +224,7 @@ class RobotiqGripper:
         if self._enabling:
             return
         if status.fault_name:
+            self.port.withdraw()
             self._disable(f"fault of the gripper: {status.fault_name}", at_rest=True)
         elif not status.active:
             self._disable("the gripper is not activated, as after it was switched on", at_rest=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 import time
 from collections.abc import Callable
@@ -24,6 +25,7 @@ from robots.drivers.robotiq.robotiq_motion import RobotiqMotion, stop_command
 from robots.port import GripperSample
 
 _GRACE_S = 2.0
+_log = logging.getLogger("flexcell.devices")
 _UNKNOWN = "?"
 
 
@@ -146,6 +148,11 @@ class RobotiqPort:
             self._motion = None
         self._link.arm(None)
 
+    def withdraw(self) -> None:
+        """Withdraw the last command, so that the fingers do not go on by themselves when a fault ends."""
+        if self._command is not None and self.commanded_go:
+            self._submit(stop_command(self._command)).add_done_callback(_note_failure)
+
     def note_stop(self) -> None:
         """Note that the connection itself has stopped the fingers."""
         self.commanded_s, self.commanded_go = time.monotonic(), False
@@ -157,6 +164,12 @@ class RobotiqPort:
     def _submit(self, command: GripperCommand) -> asyncio.Future[float]:
         self.commanded_s, self.commanded_go = time.monotonic(), command.go
         return self._link.submit(command)
+
+
+def _note_failure(written: asyncio.Future[float]) -> None:
+    error = written.exception()
+    if error is not None:
+        _log.error("the command of a gripper with a fault could not be withdrawn: %s", error)
 
 
 def enable_words(name: str) -> str:

@@ -8,6 +8,7 @@ from robots.drivers.device_transport import LinkError
 from robots.drivers.robotiq.gripper_registers import ActivationStatus, GripperCommand, GripperStatus, ObjectStatus
 
 ACKNOWLEDGED = b"ack"
+NOT_UNDERSTOOD = b"?"
 STATUS_NAMES = ("ACT", "GTO", "STA", "OBJ", "FLT", "PRE", "POS", "COU")
 WRITABLE = ("ACT", "GTO", "ATR", "ARD", "FOR", "SPE", "POS")
 _LONGEST_REPLY = 16

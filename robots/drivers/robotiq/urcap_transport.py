@@ -11,6 +11,7 @@ from robots.drivers.robotiq.gripper_registers import GripperCommand, GripperStat
 from robots.drivers.robotiq.robotiq_options import UrcapSocket
 from robots.drivers.robotiq.urcap_codec import (
     ACKNOWLEDGED,
+    NOT_UNDERSTOOD,
     STATUS_NAMES,
     decode_reply,
     encode_get,
@@ -69,12 +70,14 @@ class UrcapTransport:
 
     def write(self, command: GripperCommand) -> None:
         """Set all variables of a command."""
-        reply = self._exchange(encode_set(command), lambda reply: len(reply) >= len(ACKNOWLEDGED))
+        reply = self._exchange(
+            encode_set(command), lambda reply: len(reply) >= len(ACKNOWLEDGED) or reply == NOT_UNDERSTOOD
+        )
         if reply.strip() != ACKNOWLEDGED:
             raise LinkError(f"SET was answered with {reply[:16]!r}")
 
     def _line(self, request: bytes) -> bytes:
-        return self._exchange(request, lambda reply: reply.endswith(b"\n"))
+        return self._exchange(request, lambda reply: reply.endswith(b"\n") or reply == NOT_UNDERSTOOD)
 
     def _exchange(self, request: bytes, complete: Callable[[bytes], bool]) -> bytes:
         connection = self._socket
