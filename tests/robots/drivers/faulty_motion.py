@@ -20,8 +20,8 @@ _LIMIT_S = 30.0
 class FaultOutcome:
     """What happened.
 
-    Between the fault and the person's command `moved_after` is how far the fingers went, in counts, `commands_after` the
-    number of commands that arrived, and `refused` are the causes of the goals.
+    Between the fault and the person's command, `moved_after` is how far the fingers went, in counts, `commands_after`
+    the number of commands that arrived, and `refused` are the causes of the goals.
     """
 
     status: GoalStatus
