@@ -7,6 +7,7 @@ from typing import Any
 
 from pymodbus import FramerType, ModbusException
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+from pymodbus.exceptions import ModbusIOException
 
 from robots.drivers.device_transport import LinkError, WireTrace
 from robots.drivers.robotiq.gripper_registers import (
@@ -27,6 +28,7 @@ logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)
 _QUIET_TIMEOUTS = 2.0
 _MOST_DRAINS = 10
 _DRAINED_BYTES = 256
+_SHOWN_BYTES = 12
 
 
 class ModbusTransport:
@@ -53,6 +55,7 @@ class ModbusTransport:
         self._trace = trace
         self._client: ModbusSerialClient | ModbusTcpClient | None = None
         self._failed = False
+        self._received = b""
         # The controller with Modbus TCP has its registers at 0, and the status among the input registers.
         self._at_zero = isinstance(connection, ModbusTcp)
 
@@ -137,17 +140,25 @@ class ModbusTransport:
         return self._client
 
     def _answer(self, request: Any) -> list[int]:
+        self._received = b""
         try:
             response = request()
         except (OSError, ModbusException, IndexError, ValueError) as error:
             self._failed = True
             # pymodbus lets IndexError and ValueError of its decoders out where a frame is garbage.
-            raise LinkError(f"no valid answer within {self._timeout_s:g} s: {_first_line(error)}") from error
+            raise LinkError(f"no valid answer within {self._timeout_s:g} s{self._garbage(error)}") from error
         if response.isError():
             raise LinkError(f"the device refused the request with Modbus exception {response.exception_code}")
         return list(response.registers)
 
+    def _garbage(self, error: Exception) -> str:
+        """Return what was received instead of an answer; empty for nothing."""
+        if self._received:
+            return f", but bytes that are no answer: {self._received[:_SHOWN_BYTES].hex(' ')}"
+        return "" if isinstance(error, ModbusIOException) else f": {_first_line(error)}"
+
     def _traced(self, sent: bool, packet: bytes) -> bytes:  # noqa: FBT001 - the signature is pymodbus's
+        self._received += b"" if sent else packet
         if self._trace is not None and packet:
             self._trace(sent, packet)
         return packet

@@ -20,6 +20,7 @@ from robots.drivers.robotiq.urcap_codec import (
 )
 
 _MOST_BYTES = 256
+_SHOWN_BYTES = 12
 
 
 class UrcapTransport:
@@ -95,7 +96,8 @@ class UrcapTransport:
                 if len(reply) > _MOST_BYTES:
                     raise LinkError(f"the answer has no end: {reply[:16]!r}")
         except TimeoutError as error:
-            raise LinkError(f"no valid answer within {self._timeout_s:g} s") from error
+            garbage = f", but bytes that are no answer: {reply[:_SHOWN_BYTES].hex(' ')}" if reply else ""
+            raise LinkError(f"no valid answer within {self._timeout_s:g} s{garbage}") from error
         except OSError as error:
             raise LinkError(f"the connection failed: {error.strerror or error}") from error
         self._traced(sent=False, packet=reply)

@@ -43,7 +43,7 @@ CASES = (
     FaultCase(
         name="garbage",
         do="garbage",
-        cause=("no valid answer within", "was answered with", "is not that of a 2F gripper", "has no end"),
+        cause=("but bytes that are no answer", "was answered with", "is not that of a 2F gripper", "has no end"),
         lost=True,
         fingers=_GO_ON,
     ),

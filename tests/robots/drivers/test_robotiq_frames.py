@@ -93,6 +93,16 @@ def test_a_frame_may_arrive_in_pieces(pieces: int) -> None:
     assert b"".join(session.feed(chunk) for chunk in chunks) == bytes.fromhex("09 10 03 E8 00 03 01 30")
 
 
+def test_a_pause_ends_a_frame_of_which_a_part_was_lost() -> None:
+    """The part that arrived announces a long frame, which would swallow the requests after it."""
+    now_s = 0.0
+    gripper = EmulatedGripper(lambda: now_s, activation_s=1.0)
+    session = RtuSession(RegisterBank(gripper, unit=9, at_zero=False, faults=WireFaults()))
+    assert session.feed(bytes.fromhex("09 10 03 E8 00 03 FF")) == b""
+    now_s = 0.2
+    assert session.feed(bytes.fromhex("09 10 03 E8 00 03 06 00 00 00 00 00 00 73 30")) != b""
+
+
 def test_another_unit_a_wrong_checksum_and_a_wrong_address_are_not_obeyed() -> None:
     owner = bank()
     session = RtuSession(owner)

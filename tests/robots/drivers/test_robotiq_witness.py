@@ -1,4 +1,4 @@
-"""An independent client, pyrobotiqgripper, drives the emulator: what it takes for a gripper is not our opinion alone."""
+"""An independent client, pyrobotiqgripper, drives the emulator: not only we take it for a gripper."""
 
 from __future__ import annotations
 

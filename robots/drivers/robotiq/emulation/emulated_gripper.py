@@ -36,7 +36,7 @@ class EmulatedGripper:
     """
 
     def __init__(self, now_s: Callable[[], float], *, activation_s: float) -> None:
-        self._now_s = now_s
+        self.now_s = now_s
         self._activation_s = activation_s
         self.object_m: float | None = None
         self.ring_m: float | None = None
@@ -67,7 +67,7 @@ class EmulatedGripper:
     def command(self, command: GripperCommand) -> None:
         """Take the command registers."""
         self.advance()
-        now_s = self._now_s()
+        now_s = self.now_s()
         self.commands += 1
         if not command.activate:
             self._activation = ActivationStatus.RESET
@@ -104,7 +104,7 @@ class EmulatedGripper:
 
     def advance(self) -> None:
         """Move the fingers up to now."""
-        now_s = self._now_s()
+        now_s = self.now_s()
         elapsed_s, self._time_s = now_s - self._time_s, now_s
         if self._activation is ActivationStatus.ACTIVATING and now_s >= self._active_at_s:
             # It closes and opens once.

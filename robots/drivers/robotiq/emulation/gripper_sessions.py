@@ -30,6 +30,7 @@ from robots.drivers.robotiq.gripper_registers import (
 )
 
 _LONGEST_LINE = 256
+_PAUSE_S = 0.05
 _UNKNOWN = b"?"
 
 
@@ -91,14 +92,19 @@ class RegisterBank:
 
 
 class RtuSession:
-    """Modbus RTU frames, on a serial line or in a socket."""
+    """Modbus RTU frames, on a serial line or in a socket; a pause ends a frame that is not complete."""
 
     def __init__(self, bank: RegisterBank) -> None:
         self._bank = bank
         self._buffer = bytearray()
+        self._received_s = 0.0
 
     def feed(self, received: bytes) -> bytes:
         """Answer all complete requests."""
+        now_s = self._bank.gripper.now_s()
+        if now_s - self._received_s > _PAUSE_S:
+            self._buffer.clear()
+        self._received_s = now_s
         self._buffer.extend(received)
         replies = b""
         while (request := take_rtu_request(self._buffer)) is not None:

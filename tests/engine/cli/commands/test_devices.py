@@ -57,7 +57,12 @@ def test_a_device_that_answers_is_reported_and_not_commanded(tmp_path: Path, emu
 
     text = flexcell("devices", name, cwd=tmp_path)
     assert text.returncode == 0
-    for line in (f"left/gripper: driver robotiq at {address}", "state: not activated", "fault: none", "(min/median/max"):
+    for line in (
+        f"left/gripper: driver robotiq at {address}",
+        "state: not activated",
+        "fault: none",
+        "(min/median/max",
+    ):
         assert line in text.stdout
     assert (emulator.do("state")["commands"], emulator.do("state")["travel"]) == (0, 0.0)
 
