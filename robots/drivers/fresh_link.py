@@ -139,6 +139,18 @@ class FreshLink(Generic[R, C]):
         self._stop_command = stop_command
 
     def _work(self) -> None:
+        try:
+            self._exchange()
+        except Exception as error:
+            # A defect of a transport or library must not look like a device that is merely quiet.
+            self.lost_reason = f"the driver failed: {type(error).__name__}: {error}"
+            self._closing = True
+            self._fail_all(self.lost_reason)
+            self._post(lambda: self._refuse_start(self.lost_reason))
+            self._post(lambda: self._listener.lost(self.lost_reason))
+            raise
+
+    def _exchange(self) -> None:
         opened = False
         begun_s = good_s = time.monotonic()
         while not self._closing:

@@ -126,10 +126,11 @@ class ModbusTransport:
         """Wait until the line is quiet: RTU replies have no number, and a late one would answer the next request."""
         line: Any = client.socket
         line.timeout = _QUIET_TIMEOUTS * self._timeout_s
-        for _ in range(_MOST_DRAINS):
-            if not line.read(_DRAINED_BYTES):
-                break
-        else:
+        try:
+            quiet = any(not line.read(_DRAINED_BYTES) for _ in range(_MOST_DRAINS))
+        except OSError as error:
+            raise LinkError(f"the serial line failed: {error}") from error
+        if not quiet:
             raise LinkError("the line is never quiet: is another master on it?")
         line.timeout = self._timeout_s
         self._failed = False

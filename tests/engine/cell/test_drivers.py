@@ -6,6 +6,7 @@ import json
 import pkgutil
 from collections.abc import Iterator
 from importlib import import_module
+from typing import Any
 
 import jsonschema
 import pytest
@@ -21,7 +22,7 @@ from engine.skill import Skill
 from engine.skills.hand import ReadHand
 from engine.state import State
 
-CELL = {"flexcell": 1, "cell": "bench", "world": {"kind": "mujoco"}}
+CELL: dict[str, object] = {"flexcell": 1, "cell": "bench", "world": {"kind": "mujoco"}}
 
 
 def subclasses(kind: type) -> Iterator[type]:
@@ -36,7 +37,8 @@ def cell_with(driver: object) -> dict[str, object]:
 
 
 def is_valid(document: object) -> bool:
-    return jsonschema.Draft202012Validator(json.loads(cell_schema_text())).is_valid(document)
+    validator: Any = jsonschema.Draft202012Validator(json.loads(cell_schema_text()))
+    return validator.is_valid(document)
 
 
 def test_every_skill_with_a_capability_exists() -> None:

@@ -95,7 +95,7 @@ class Emulators:
 
 @asynccontextmanager
 async def driven(
-    emulator: EmulatedProcess, *, enable: bool = False, trace: WireTrace | None = None, **options: object
+    emulator: EmulatedProcess, *, enable: bool = False, trace: WireTrace | None = None, **options: float
 ) -> AsyncGenerator[tuple[SkillBus, RobotiqGripper]]:
     """The driver on an emulator, with its skills on a bus."""
     async with SkillBus(new_clock()) as bus:

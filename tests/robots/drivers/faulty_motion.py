@@ -34,10 +34,10 @@ class FaultOutcome:
     moves_again: bool
 
 
-async def faulty_motion(emulator: EmulatedProcess, case: FaultCase, **options: object) -> FaultOutcome:
+async def faulty_motion(emulator: EmulatedProcess, case: FaultCase) -> FaultOutcome:
     """Move, cause the fault, end it, look whether anything moves, and recover as a person would."""
     emulator.do("object", width_m=None)
-    async with driven(emulator, enable=True, **options) as (bus, device):
+    async with driven(emulator, enable=True) as (bus, device):
         await bus.send_goal(GripperOpen(speed_m_s=0.15), to=HAND).result()
         goal = bus.send_goal(GripperMove(width_m=0.01, speed_m_s=0.05), to=HAND)
         while device.port.sample().width_m > 0.08:
@@ -50,8 +50,11 @@ async def faulty_motion(emulator: EmulatedProcess, case: FaultCase, **options: o
             await bus.clock.sleep(0.05)
             if case.do == "restart" or time.monotonic() - begun_s > _LIMIT_S:
                 break
+        while case.lost and not device.lost_reason and time.monotonic() - begun_s < _LIMIT_S:
+            # The motion may fail a moment before, by a reading that is no longer fresh.
+            await bus.clock.sleep(0.02)
         lost_reason = device.lost_reason
-        if not lost_reason:
+        if not case.lost:
             await device.report(readings=5)
         before = emulator.do("state")
         refused = [await _refusal(bus.send_goal(GripperOpen(), to=HAND))]
