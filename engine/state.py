@@ -171,6 +171,9 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     outcomes: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[Mapping[str, Any]] = _NO_OUTPUT
     """Output key → type."""
+    capability: ClassVar[str] = ""
+    """What the driver of the device that it commands must be able to do, see `engine.cell.drivers`; empty for nothing
+    in particular."""
     icon: ClassVar[str] = ""
     """The name of its icon on the page; without one, `ICON` of its module, then of its package."""
     success: ClassVar[tuple[str, ...]] = ()

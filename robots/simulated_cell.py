@@ -80,7 +80,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         base=placement.base,
         port=world.arm(placement.name),
         clock=clock,
-        gripper=tool_server(world, placement.name, model.tool),
+        gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
         outputs=_outputs(cell, world, placement.name, model),
         workspace=workspace,
     )

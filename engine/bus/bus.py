@@ -71,6 +71,7 @@ class SkillBus:
         self._running: dict[str, ActiveGoal[Any]] = {}
         self._goals: dict[GoalHandle[Any, Any], asyncio.Task[GoalEnd[Any]]] = {}
         self._goal_count = 0
+        self._reasons: dict[str, Callable[[str], str]] = {}
 
     async def __aenter__(self) -> Self:
         return self
@@ -169,6 +170,10 @@ class SkillBus:
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
         self._actions[address] = _ActionServer(skill, handler, exclusive or address)
+
+    def explain_missing(self, namespace: str, reason: Callable[[str], str]) -> None:
+        """Give the reason why a skill is not served at `namespace`: by its name, empty where there is none."""
+        self._reasons[namespace] = reason
 
     def withdraw(self, namespace: str) -> None:
         """Remove all services and actions under a namespace, for example when a device disconnects."""
@@ -291,6 +296,10 @@ class SkillBus:
         return address
 
     def _no_such_service(self, address: str) -> NoSuchSkill:
+        namespace, _, skill = address.rpartition("/")
+        reason = self._reasons[namespace](skill) if namespace in self._reasons else ""
+        if reason:
+            return NoSuchSkill(reason, where=address, hint="use another device, or simulate it with `driver: sim`")
         known = [*self._services, *self._actions]
         return NoSuchSkill("no such service", where=address, hint=did_you_mean(address, known))
 

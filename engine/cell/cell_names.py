@@ -10,8 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from engine.cell.drivers.driver import Driver
+from engine.cell.drivers.driver_assignments import assigned_drivers
 from engine.cell.robot_models import RobotModels, RobotSummary, robot_models, tool_kinds
-from engine.document.cell import Cell, RobotSpec
+from engine.document.cell import Cell
+from engine.document.robot_spec import RobotSpec
 from engine.errors import FlexcellError
 from engine.suggestions import did_you_mean
 
@@ -53,6 +56,8 @@ class CellNames:
         default_factory=dict[str, "tuple[tuple[float, float], ...]"]
     )
     """Lower and upper position limit of each joint of the described robots, radians."""
+    drivers: Mapping[str, Driver] = field(default_factory=dict[str, Driver])
+    """The drivers of the devices that are not simulated, by bus namespace: `left`, `left/gripper`."""
 
     def has(self, kind: CellNameKind, name: str) -> bool:
         """Return whether the cell has, or may have, a name of a kind."""
@@ -87,6 +92,11 @@ class CellNames:
     def may_come(kind: CellNameKind, name: str) -> bool:
         """Return whether a name may be added while the cell is open; links of arms are never added."""
         return kind in _GROWING and "/" not in name
+
+    def beyond_driver(self, kind: CellNameKind, name: str, capability: str) -> str:
+        """Return why the driver of a robot, or of its tool of this kind, cannot do something; empty if it can."""
+        driver = self.drivers.get(name if kind == "robot" else f"{name}/{kind}")
+        return driver.lacks(capability) if driver is not None else ""
 
     def listed(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the sorted names of every known kind."""
@@ -158,7 +168,22 @@ def cell_names(cell: Cell) -> CellNames:
         found["planner"] = frozenset(models.planners())
     undescribed = frozenset(name for name, summary in summaries.items() if summary is None)
     joints = {name: summary.joints for name, summary in summaries.items() if summary is not None}
-    return CellNames(cell=cell.name, by_kind=found, undescribed=undescribed | people, joints=joints)
+    return CellNames(
+        cell=cell.name, by_kind=found, undescribed=undescribed | people, joints=joints, drivers=_drivers(cell)
+    )
+
+
+def _drivers(cell: Cell) -> dict[str, Driver]:
+    if not cell.document.real_devices:
+        return {}  # drivers are looked up only where one is named: that takes 20 ms
+    found: dict[str, Driver] = {}
+    for assigned in assigned_drivers(cell):
+        try:
+            driver = assigned.driver()
+        except FlexcellError:
+            continue  # the check of the cell reports the error
+        found[assigned.device_name(driver)] = driver
+    return found
 
 
 def _summary(models: RobotModels | None, cell: Cell, robot: str) -> RobotSummary | None:

@@ -17,13 +17,14 @@ from engine.bus import SkillBus
 from engine.cell.cell_connection import CellConnection, CellConnectionMonitor
 from engine.cell.cell_store import open_cell_store, store_address
 from engine.cell.cell_topics import open_topics
+from engine.cell.drivers.driver_assignments import AssignedDriver, assigned_drivers
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries_document import load_entries
-from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
+from engine.errors import CellError, ControlError, DocumentError, FlexcellError, NotStopped, RobotError
 from engine.measures import TopicMeasures
 from engine.preemption import OverduePolicy, preempt
-from engine.registry import DRIVERS, WORLDS, load_factory
+from engine.registry import WORLDS, load_factory
 from engine.robot import MeasurePort, Robot, World
 from engine.stop import StopRelay
 from engine.store import Store, publish_changes, register_store
@@ -34,7 +35,6 @@ _PATIENCE_S = 10.0
 _log = logging.getLogger("flexcell.cell")
 
 NewWorld = Callable[..., World]
-NewRobot = Callable[..., Robot]
 DeviceStopped = Callable[[str, BaseException | None], None]
 """Receives the name of a device once its stop has ended, and why it did not confirm rest; None if it did."""
 
@@ -62,6 +62,8 @@ class OpenCell:
         self.bus = SkillBus(new_clock())
         self.store: Store | None = None
         self.robots: Mapping[str, Robot] = {}
+        self.tools: Mapping[str, Robot] = {}
+        """The tools with a driver of their own, by bus namespace; all others are served by their arms."""
         self._world: World | None = None
         self._real_arms = TopicMeasures(())
         self._store_path = store_path
@@ -129,8 +131,8 @@ class OpenCell:
 
     @property
     def devices(self) -> tuple[Robot, ...]:
-        """Everything that a stop brings to rest: the robots, then the world."""
-        return (*self.robots.values(), *((self._world,) if self._world is not None else ()))
+        """Everything that a stop brings to rest: the robots, the tools with a driver of their own, then the world."""
+        return (*self.robots.values(), *self.tools.values(), *((self._world,) if self._world is not None else ()))
 
     async def stop(self, *, ended: DeviceStopped | None = None) -> None:
         """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
@@ -233,25 +235,41 @@ class OpenCell:
 
     async def _open_robots(self, cell: Cell, world: World | None) -> None:
         simulated = {robot.name: robot for robot in world.robots()} if world is not None else {}
+        driven = {(each.robot, each.tool): each for each in assigned_drivers(cell)}
         robots: dict[str, Robot] = {}
+        tools: dict[str, Robot] = {}
         for name, entry in cell.document.robots.items():
-            try:
-                device = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
-            except FlexcellError as error:
-                raise CellError(error.message, where=f"robot {name} of {cell.file}", hint=error.hint) from error
-            robot = await self._stack.enter_async_context(device)
-            robot.register(self.bus)
-            robots[name] = robot
-            self._connections.follow(robot)
+            robots[name] = simulated[name] if entry.simulated else self._driven(driven[name, False])
+            await self._open_device(robots[name])
+            if (name, True) in driven:
+                tool = self._driven(driven[name, True])
+                await self._open_device(tool)
+                tools[tool.name] = tool
         self.robots = robots
+        self.tools = tools
         real = frozenset(name for name, entry in cell.document.robots.items() if not entry.simulated)
         if real:
             self._real_arms = TopicMeasures(real)
             self._stack.callback(self._real_arms.listen(self.bus))
 
-    def _new_robot(self, cell: Cell, name: str, kind: str) -> Robot:
-        maker: NewRobot = load_factory(DRIVERS, kind)
-        return maker(cell, name=name, bus=self.bus)
+    async def _open_device(self, device: Robot) -> None:
+        robot = await self._stack.enter_async_context(device)
+        robot.register(self.bus)
+        self._connections.follow(robot)
+
+    def _driven(self, assigned: AssignedDriver) -> Robot:
+        """Return the device of a driver, which refuses what the driver cannot do with the reason."""
+        try:
+            driver = assigned.driver()
+            name = assigned.device_name(driver)
+            device = driver.new_device(assigned.options(driver), name=name, clock=self.bus.clock)
+        except DocumentError:
+            raise  # it has the position of the option
+        except FlexcellError as error:
+            where = f"{'tool of ' if assigned.tool else ''}robot {assigned.robot} of {assigned.cell.file}"
+            raise CellError(error.message, where=where, hint=error.hint) from error
+        self.bus.explain_missing(name, driver.lacks_for_skill)
+        return device
 
 
 async def _wait_uncancelled(tasks: tuple[asyncio.Task[None], ...]) -> None:

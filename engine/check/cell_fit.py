@@ -9,7 +9,8 @@ import msgspec
 
 from engine.check.behavior_check import check_given
 from engine.document.behavior import Behavior
-from engine.document.cell import Cell, RobotSpec, load_cell
+from engine.document.cell import Cell, load_cell
+from engine.document.robot_spec import RobotSpec
 from engine.errors import DocumentError
 from engine.runtime.plan import Catalogue
 

@@ -27,6 +27,8 @@ _IMPORT_PATHS = {
     "states": "engine.cli.commands.states:app",
     "store": "engine.cli.commands.store:app",
     "bus": "engine.cli.commands.bus:app",
+    "devices": "engine.cli.commands.devices.devices:devices",
+    "emulate": "engine.cli.commands.devices.emulate:emulate",
     "cell": "engine.cli.commands.cell:app",
     "teach": "engine.cli.commands.teach:app",
     "schema": "engine.cli.commands.schema:schema",

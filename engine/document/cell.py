@@ -24,6 +24,7 @@ from engine.document.cell_perception import (
 )
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
+from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
@@ -76,45 +77,6 @@ class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag=
     start_limit_s: Annotated[
         float, Meta(ge=1.0, le=3600.0, description="Maximum seconds until the process of the world has built it")
     ] = 180.0
-
-
-OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
-OutputNumber = Annotated[int, Meta(ge=0, description="Number of a digital output of the robot's controller, from 0")]
-
-
-class GripperSpec(StrictModel, frozen=True, kw_only=True):
-    """The gripper at the flange of a robot."""
-
-    model: Annotated[str, Meta(min_length=1, description="Name or folder of the gripper model")]
-
-
-class RobotSpec(StrictModel, frozen=True, kw_only=True):
-    """One robot: its model, driver, base placement and gripper.
-
-    `model` (also that of the gripper) is the name of a built-in model, or the path of a model folder
-    with a `/` in it, relative to this document. `calibration` is the arm's factory calibration file.
-    `coupled_joints`: the controller counts coupled axes relative to each other. `outputs` maps uses to
-    digital outputs of the controller. `driver` is `sim`, or a mapping with the driver's name as `kind`
-    and its options as further keys.
-    """
-
-    model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
-    driver: Literal["sim"] | dict[str, object] = "sim"
-    base: Placement = Placement()
-    gripper: GripperSpec | None = None
-    calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
-    coupled_joints: bool = False
-    outputs: dict[OutputUse, OutputNumber] = {}
-
-    @property
-    def simulated(self) -> bool:
-        """True if the world of the cell simulates this robot."""
-        return self.driver == "sim"
-
-    @property
-    def driver_kind(self) -> str:
-        """The name of the driver; its options are the other keys of `driver`."""
-        return self.driver if isinstance(self.driver, str) else str(self.driver["kind"])
 
 
 TopicName = Annotated[
@@ -198,6 +160,13 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
     ] = {}
+
+    @property
+    def real_devices(self) -> dict[str, str]:
+        """The devices that are not simulated, in words, with their drivers: `robot left`, `tool of left`."""
+        arms = {f"robot {name}": robot.driver_kind for name, robot in self.robots.items() if not robot.simulated}
+        tools = {name: robot.gripper.driver_kind for name, robot in self.robots.items() if robot.gripper is not None}
+        return arms | {f"tool of {name}": kind for name, kind in tools.items() if kind}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -299,12 +268,10 @@ def _require_sizes(document: CellDocument, source: DocumentSource) -> None:
 
 def _require_drivers(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
-        if isinstance(robot.driver, dict) and not isinstance(robot.driver.get("kind"), str):
-            raise DocumentError(
-                f"the driver of robot `{name}` has no `kind`",
-                where=source.position(("robots", name, "driver")),
-                hint="write `driver: sim` or `driver: {kind: NAME, …}`",
-            )
+        require_driver_kind(f"robot `{name}`", robot.driver, source, ("robots", name, "driver"))
+        if robot.gripper is not None:
+            path: DataPath = ("robots", name, "gripper", "driver")
+            require_driver_kind(f"the gripper of `{name}`", robot.gripper.driver, source, path)
 
 
 def _require_world(document: CellDocument, source: DocumentSource) -> None:

@@ -38,7 +38,7 @@ def schema_texts() -> dict[str, str]:
             "title": f"flexcell {name} document",
             **msgspec.json.schema(model, schema_hook=any_value),
         }
-        texts[f"{name}.schema.json"] = json.dumps(_one_line_texts(schema), indent=2, ensure_ascii=False) + "\n"
+        texts[f"{name}.schema.json"] = json.dumps(one_line_texts(schema), indent=2, ensure_ascii=False) + "\n"
     return texts
 
 
@@ -53,12 +53,12 @@ def write_schemas(folder: Path = SCHEMA_FOLDER) -> tuple[Path, ...]:
     return tuple(written)
 
 
-def _one_line_texts(value: object) -> object:
+def one_line_texts(value: object) -> object:
     """Remove the line breaks and indents of docstrings from descriptions."""
     if isinstance(value, str):
         return " ".join(value.split())
     if isinstance(value, dict):
-        return {key: _one_line_texts(item) for key, item in cast("dict[str, object]", value).items()}
+        return {key: one_line_texts(item) for key, item in cast("dict[str, object]", value).items()}
     if isinstance(value, list | tuple):
-        return [_one_line_texts(item) for item in cast("list[object]", value)]
+        return [one_line_texts(item) for item in cast("list[object]", value)]
     return value

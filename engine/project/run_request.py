@@ -215,11 +215,10 @@ def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) 
     Raises:
         ControlError: a robot is real.
     """
-    robots = cell.document.robots if cell is not None else {}
-    real = [name for name, entry in robots.items() if not entry.simulated]
+    real = tuple(cell.document.real_devices) if cell is not None else ()
     if plan.stood_in_for and real and not allowed:
         raise ControlError(
-            f"{plan.stood_in_for[0]} has a substitute, but {real[0]} is a real robot",
+            f"{plan.stood_in_for[0]} has a substitute, but {real[0]} is real",
             where=plan.name,
             hint="run it in a simulated cell, or allow it with `--substitute-on-robots`",
         )

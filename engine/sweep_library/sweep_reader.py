@@ -381,13 +381,12 @@ def require_simulated(subject: SweepSubject) -> None:
         ControlError: a robot is real.
     """
     cell = subject.cell
-    for name, robot in cell.document.robots.items() if cell is not None else ():
-        if not robot.simulated:
-            raise ControlError(
-                f"the robot {name} is real (driver {robot.driver_kind}): a sweep only simulates",
-                where=cell.file if cell is not None else None,
-                hint="give the sweep a `cell` whose robots have `driver: sim`",
-            )
+    for device, driver in cell.document.real_devices.items() if cell is not None else ():
+        raise ControlError(
+            f"the {device} is real (driver {driver}): a sweep only simulates",
+            where=cell.file if cell is not None else None,
+            hint="give the sweep a `cell` whose robots and tools have `driver: sim`",
+        )
 
 
 def _forget_oldest(folder: Path) -> None:

@@ -86,6 +86,10 @@ class GripperServer:
         )
 
     async def _read(self, request: ReadGripper) -> GripperState:
+        return self.state()
+
+    def state(self) -> GripperState:
+        """Return the measured state; what is held is judged by the active grasp command."""
         sample = self._port.sample()
         held = self.grip is not None and not check_grasp(sample, self.grip)
         return GripperState(

@@ -83,6 +83,7 @@ def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
         gripper=model_location(robot.gripper.model, resolve) if robot.gripper is not None else None,
         calibration=str(resolve(robot.calibration)) if robot.calibration is not None else None,
         coupled_joints=robot.coupled_joints,
+        driven_tool=robot.gripper is not None and bool(robot.gripper.driver_kind),
     )
     try:
         placement.robot()

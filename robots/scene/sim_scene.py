@@ -26,7 +26,8 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     """One arm: its name in the cell, its models and its base pose.
 
     `model` and `gripper` are names or folders of models; `gripper` is None for a bare flange.
-    `calibration` is the path of the arm's factory calibration file.
+    `calibration` is the path of the arm's factory calibration file. A `driven_tool` has a driver of its own: the world
+    simulates its body, with its fingers at rest, and neither commands it nor publishes its state.
     """
 
     name: str
@@ -35,6 +36,7 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     gripper: str | None = OWN_TOOL
     calibration: str | None = None
     coupled_joints: bool = False
+    driven_tool: bool = False
 
     def robot(self) -> RobotModel:
         """Return the model of the arm with its tool.

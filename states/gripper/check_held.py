@@ -16,6 +16,7 @@ class CheckHeld(State, frozen=True, kw_only=True):
     """Check whether the gripper still holds the part that it grasped; `lost` also when it holds another one."""
 
     state_name: ClassVar[str] = "gripper.CheckHeld"
+    capability: ClassVar[str] = "gripper"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
     success: ClassVar[tuple[str, ...]] = ("held",)
     observes: ClassVar[bool] = True

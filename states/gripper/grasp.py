@@ -39,6 +39,7 @@ class Grasp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "gripper.Grasp"
+    capability: ClassVar[str] = "gripper"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
     success: ClassVar[tuple[str, ...]] = ("held",)
     outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "width_m": float}

@@ -14,6 +14,7 @@ class Move(State, frozen=True, kw_only=True):
     """Move the fingers of a gripper to an opening, without grasping."""
 
     state_name: ClassVar[str] = "gripper.Move"
+    capability: ClassVar[str] = "gripper"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

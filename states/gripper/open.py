@@ -15,6 +15,7 @@ class Open(State, frozen=True, kw_only=True):
     """Open a gripper fully."""
 
     state_name: ClassVar[str] = "gripper.Open"
+    capability: ClassVar[str] = "gripper"
     outcomes: ClassVar[tuple[str, ...]] = ("opened", "failed")
     success: ClassVar[tuple[str, ...]] = ("opened",)
 

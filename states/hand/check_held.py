@@ -16,6 +16,7 @@ class CheckHeld(State, frozen=True, kw_only=True):
     """Check whether a hand still holds a part; `lost` also when it holds another one."""
 
     state_name: ClassVar[str] = "hand.CheckHeld"
+    capability: ClassVar[str] = "hand"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
     success: ClassVar[tuple[str, ...]] = ("held",)
     observes: ClassVar[bool] = True

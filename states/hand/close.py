@@ -21,6 +21,7 @@ class Close(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "hand.Close"
+    capability: ClassVar[str] = "hand"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
     success: ClassVar[tuple[str, ...]] = ("held",)
     outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "closed_percent": float}

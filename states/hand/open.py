@@ -14,6 +14,7 @@ class Open(State, frozen=True, kw_only=True):
     """Open a hand fully within `time_s`."""
 
     state_name: ClassVar[str] = "hand.Open"
+    capability: ClassVar[str] = "hand"
     outcomes: ClassVar[tuple[str, ...]] = ("opened", "failed")
     success: ClassVar[tuple[str, ...]] = ("opened",)
 

@@ -19,6 +19,7 @@ class SetOutput(State, frozen=True, kw_only=True):
     """Turn an output on or off, by its number (`output`) or by the device connected to it (`device`)."""
 
     state_name: ClassVar[str] = "io.SetOutput"
+    capability: ClassVar[str] = "outputs"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

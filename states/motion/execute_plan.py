@@ -21,6 +21,7 @@ class ExecutePlan(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.ExecutePlan"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

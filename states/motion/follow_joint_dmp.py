@@ -21,6 +21,7 @@ class FollowJointDmp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowJointDmp"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -24,6 +24,7 @@ class FollowRecording(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowRecording"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

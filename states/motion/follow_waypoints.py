@@ -26,6 +26,7 @@ class FollowWaypoints(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowWaypoints"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

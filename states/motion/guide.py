@@ -20,6 +20,7 @@ class Guide(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.Guide"
+    capability: ClassVar[str] = "guide"
     outcomes: ClassVar[tuple[str, ...]] = ("finished", "failed")
     success: ClassVar[tuple[str, ...]] = ("finished",)
     outputs: ClassVar[Mapping[str, Any]] = {"samples": int}

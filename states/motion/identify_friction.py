@@ -21,6 +21,7 @@ class IdentifyFriction(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.IdentifyFriction"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("identified", "failed")
     success: ClassVar[tuple[str, ...]] = ("identified",)
     outputs: ClassVar[Mapping[str, Any]] = {"friction": tuple[JointFrictionEstimate, ...]}

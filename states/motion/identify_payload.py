@@ -25,6 +25,7 @@ class IdentifyPayload(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.IdentifyPayload"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("identified", "uncertain", "failed")
     success: ClassVar[tuple[str, ...]] = ("identified",)
     outputs: ClassVar[Mapping[str, Any]] = {

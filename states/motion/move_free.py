@@ -47,6 +47,7 @@ class MoveFree(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveFree"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "no_way", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

@@ -19,6 +19,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
     """Move an arm in joint space, all joints synchronized, with a trapezoidal velocity profile."""
 
     state_name: ClassVar[str] = "motion.MoveJoints"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -39,6 +39,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveLinear"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

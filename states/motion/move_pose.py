@@ -23,6 +23,7 @@ class MovePose(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MovePose"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -34,6 +34,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveUntilContact"
+    capability: ClassVar[str] = "trajectory"
     outcomes: ClassVar[tuple[str, ...]] = ("contact", "no_contact", "failed")
     success: ClassVar[tuple[str, ...]] = ("contact",)
     outputs: ClassVar[Mapping[str, Any]] = {"travelled_m": float, "force_n": float, "peak_n": float}

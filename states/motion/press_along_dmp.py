@@ -30,6 +30,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.PressAlongDmp"
+    capability: ClassVar[str] = "force"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"force_error_rms_n": float, "force_error_max_n": float}

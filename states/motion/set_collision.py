@@ -21,6 +21,7 @@ class SetCollision(State, frozen=True, kw_only=True):
     """Set the external torque or force above which the arm stops; without either, it never stops on contact."""
 
     state_name: ClassVar[str] = "motion.SetCollision"
+    capability: ClassVar[str] = "reflex"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

@@ -17,6 +17,7 @@ class SetController(State, frozen=True, kw_only=True):
     """Switch the arm to joint impedance or Cartesian impedance control; the switch is bumpless."""
 
     state_name: ClassVar[str] = "motion.SetController"
+    capability: ClassVar[str] = "torque"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

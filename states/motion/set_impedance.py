@@ -21,6 +21,7 @@ class SetImpedance(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.SetImpedance"
+    capability: ClassVar[str] = "torque"
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

@@ -7,13 +7,14 @@ from typing import Any
 
 from engine.cell.cell_names import CellNameKind, CellNames, cell_names
 from engine.cell.robot_models import RobotModels, robot_models
+from engine.check.cell.driver_checks import check_drivers
 from engine.check.finding import Finding, finding_sort_key, new_finding
 from engine.check.values.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
-from engine.document.cell import Cell, CellDocument, RobotSpec
+from engine.document.cell import Cell, CellDocument
 from engine.document.entries_document import Entries, EntriesDocument, load_entries
+from engine.document.robot_spec import RobotSpec
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.registry import DRIVERS, registered_names
 from engine.suggestions import did_you_mean
 
 _PART_FRAME = "part"
@@ -26,9 +27,9 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
     models = robot_models()
     findings = list(_suspect(cell.source, CellDocument))
     for robot, entry in cell.document.robots.items():
-        findings += _check_driver(cell, robot, entry)
         if models is not None:
             findings += _check_models(cell, robot, entry, models)
+    findings += check_drivers(cell)
     for camera, entry in cell.document.cameras.items():
         for part in entry.detect.labels if entry.detect is not None else ():
             path: DataPath = ("cameras", camera, "detect", "labels", part)
@@ -74,16 +75,6 @@ def _check_separation(cell: Cell) -> Iterator[Finding]:
                 message = f"the {key} of person `{name}` is {beyond_m:.2f} m beyond the map, where nothing is measured"
                 hint = "make the box of `occupancy` larger, so that people are measured before they are near"
                 yield new_finding("person-beyond-map", message, path="", position=position, hint=hint)
-
-
-def _check_driver(cell: Cell, robot: str, entry: RobotSpec) -> Iterator[Finding]:
-    known = registered_names(DRIVERS)
-    if not entry.simulated and entry.driver_kind not in known:
-        position = cell.source.position(("robots", robot, "driver", "kind"))
-        hint = did_you_mean(entry.driver_kind, known) if known else "none is installed; use `driver: sim`"
-        yield new_finding(
-            "unknown-driver", f"there is no driver `{entry.driver_kind}`", path="", position=position, hint=hint
-        )
 
 
 def _check_models(cell: Cell, robot: str, entry: RobotSpec, models: RobotModels) -> Iterator[Finding]:

@@ -76,6 +76,7 @@ class CellNameCheck:
         if top:
             yield from check_declared_names(subject, self.names, self.parameters)
         for use in self._uses(subject, known):
+            yield from self._beyond_driver(subject, use)
             spec = subject.behavior.parameters.get(use.key) if use.key is not None else None
             if top and spec is not None and spec.cell_name == use.kind:
                 continue  # found where it is declared
@@ -84,6 +85,23 @@ class CellNameCheck:
             # The initial userdata of a referred behavior depends on each reference.
             if resolver is not None and top and use.key is not None and use.key not in self.parameters:
                 yield from self._reaching(subject, use, use.key, resolver)
+
+    def _beyond_driver(self, subject: AnalyzedBehavior, use: _Use) -> Iterator[Finding]:
+        """Find a state that needs more than the driver of its device can do."""
+        signature = subject.signature(use.placed.node)
+        if (
+            signature is None
+            or not signature.state.capability
+            or not isinstance(use.value, str)
+            or use.owner is not None
+        ):
+            return
+        reason = self.names.beyond_driver(use.kind, use.value, signature.state.capability)
+        if reason:
+            message = f"{signature.name} cannot be executed by `{use.value}`: {reason}"
+            hint = "use another device, or simulate it with `driver: sim`"
+            at_key = use.keys == ("with",)
+            yield subject.finding("beyond-driver", message, use.placed.path, *use.keys, hint=hint, at_key=at_key)
 
     def _compared(
         self, subject: AnalyzedBehavior, use: _Use, value: object, origin: str, *, maybe: bool = False

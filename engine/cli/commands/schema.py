@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from engine.cell.drivers import cell_schema_text
 from engine.document.schema import schema_texts
 
 
@@ -16,5 +17,5 @@ def schema(
         typer.Argument(help="Kind of document."),
     ] = "behavior",
 ) -> None:
-    """Print the JSON Schema of a kind of document."""
-    sys.stdout.write(schema_texts()[f"{kind}.schema.json"])
+    """Print the JSON Schema of a kind of document; that of a cell has the options of the installed drivers."""
+    sys.stdout.write(cell_schema_text() if kind == "cell" else schema_texts()[f"{kind}.schema.json"])

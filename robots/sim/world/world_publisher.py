@@ -41,7 +41,9 @@ class WorldPublisher:
         self._parts = frozenset(summary.parts)
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
         arms = tuple(topic for arm in summary.arms for topic in arm_topics(bus, host, arm, joint_maps[arm.name]))
-        topics = (tool_topic(bus, host, arm, parts=self._parts) for arm in summary.arms)
+        driven = {placement.name for placement in scene.arms if placement.driven_tool}
+        simulated = [arm for arm in summary.arms if arm.name not in driven]
+        topics = (tool_topic(bus, host, arm, parts=self._parts) for arm in simulated)
         self._fast = (*arms, *(topic for topic in topics if topic is not None))
         self._frame_topic = bus.topic("cell/frames", FramePoses)
         self._part_topic = bus.topic("cell/parts", PartPoses)

@@ -8,14 +8,20 @@ from typing import Any, Self
 
 import pytest
 
-import engine.cell.open_cell
+import engine.cell.drivers.driver_registry
 from engine.bus import SkillBus
+from engine.cell.drivers import Driver, DriverOptions
 from engine.cell.open_cell import OpenCell
-from engine.document.cell import Cell, load_cell
+from engine.clock import Clock
+from engine.document.cell import load_cell
 from engine.robot import DeviceStatus
 from tests.engine.measures.published_arm import RATE_RAD_S, describe, press, turn
 
 CELL = "flexcell: 1\ncell: c\nrobots: {left: {model: panda, driver: {kind: other}}}\n"
+
+
+class OtherOptions(DriverOptions, frozen=True, kw_only=True, tag="other"):
+    """None."""
 
 
 class PublishingArm:
@@ -23,7 +29,7 @@ class PublishingArm:
 
     status = DeviceStatus.READY
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, options: OtherOptions, *, name: str, clock: Clock) -> None:
         self.name = name
 
     def register(self, bus: SkillBus) -> None:
@@ -55,13 +61,21 @@ async def test_a_real_arm_is_measured_by_its_topics(
 ) -> None:
     """By the names of a simulated one; what its driver measures itself counts instead."""
 
-    def make(cell: Cell, *, name: str, bus: SkillBus) -> PublishingArm:
-        return kind(name)
+    driver = Driver(
+        kind="other",
+        drives="arm",
+        options=OtherOptions,
+        capabilities=frozenset({"trajectory"}),
+        ports={},
+        proven="nothing",
+        page="nowhere",
+        device=f"{__name__}:{kind.__name__}",
+    )
 
     def load(group: str, name: str) -> Any:
-        return make
+        return driver
 
-    monkeypatch.setattr(engine.cell.open_cell, "load_factory", load)
+    monkeypatch.setattr(engine.cell.drivers.driver_registry, "load_factory", load)
     (tmp_path / "cell.yaml").write_text(CELL, encoding="utf-8")
     async with OpenCell(load_cell(tmp_path / "cell.yaml")) as cell:
         turn(cell.bus, 0.0)

@@ -7,7 +7,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.document.cell import CellDocument, Fixture, GripperSpec, MujocoWorld, Spring, load_cell
+from engine.document.cell import CellDocument, Fixture, MujocoWorld, Spring, load_cell
+from engine.document.robot_spec import GripperSpec
 from engine.errors import CellError
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell

@@ -1,0 +1,72 @@
+"""Which devices of a cell document have a driver of their own: arms, and tools also of simulated arms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from engine.cell.drivers.driver import Driver, DriverOptions
+from engine.cell.drivers.driver_registry import driver_options, installed_driver
+from engine.document import Cell, DataPath
+from engine.errors import CellError
+
+
+@dataclass(frozen=True, kw_only=True)
+class AssignedDriver:
+    """One device with a driver; `path` leads to `driver` in the document, `model` is that of the arm or tool."""
+
+    cell: Cell
+    robot: str
+    kind: str
+    model: str
+    path: DataPath
+    tool: bool
+
+    def driver(self) -> Driver:
+        """Return the driver.
+
+        Raises:
+            RegistryError: there is none of this name, or it cannot be loaded.
+            CellError: it drives something else than this arm or tool.
+        """
+        driver = installed_driver(self.kind)
+        problem = self._misfit(driver)
+        if problem:
+            hint = f"see {driver.page}"
+            raise CellError(problem, where=self.cell.source.position((*self.path, "kind")), hint=hint)
+        return driver
+
+    def options(self, driver: Driver) -> DriverOptions:
+        """Return its options; raises DocumentError with the position of what is wrong."""
+        return driver_options(driver, self.cell.source, self.path)
+
+    def device_name(self, driver: Driver) -> str:
+        """Return the bus namespace of the device: `left`, or `left/gripper` of a tool."""
+        return f"{self.robot}/{driver.drives}" if self.tool else self.robot
+
+    def _misfit(self, driver: Driver) -> str:
+        if self.tool == (driver.drives == "arm"):
+            what = "a tool" if self.tool else "an arm"
+            return (
+                f"the driver {driver.kind} drives {'arms' if driver.drives == 'arm' else 'tools'}, and this is {what}"
+            )
+        name = self.model.rstrip("/").rpartition("/")[2]
+        if driver.models and name not in driver.models:
+            return f"the driver {driver.kind} drives {', '.join(sorted(driver.models))}, not {self.model}"
+        return ""
+
+
+def assigned_drivers(cell: Cell) -> Iterator[AssignedDriver]:
+    """Yield the devices of a cell that are not simulated and have a driver, in the order of the document."""
+    for name, robot in cell.document.robots.items():
+        if not robot.simulated:
+            path: DataPath = ("robots", name, "driver")
+            yield AssignedDriver(
+                cell=cell, robot=name, kind=robot.driver_kind, model=robot.model, path=path, tool=False
+            )
+        gripper = robot.gripper
+        if gripper is not None and gripper.driver_kind:
+            path = ("robots", name, "gripper", "driver")
+            yield AssignedDriver(
+                cell=cell, robot=name, kind=gripper.driver_kind, model=gripper.model, path=path, tool=True
+            )

@@ -1,0 +1,84 @@
+"""The contract of an emulator: a program beside a driver that speaks the protocol of the device on loopback."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+import msgspec
+
+from engine.document import StrictModel
+from engine.errors import FlexcellError, RegistryError
+from engine.registry import load_factory, registered_names
+from engine.suggestions import did_you_mean
+
+EMULATORS = "flexcell.emulators"
+
+
+class EmulatorOptions(StrictModel, frozen=True, kw_only=True):
+    """Base of the options of emulators: fields with descriptions and defaults."""
+
+
+Ready = Callable[[Mapping[str, object]], None]
+"""Receives where the emulator listens once it does."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Emulator:
+    """An emulator, as the entry point `flexcell.emulators` of its name offers it.
+
+    Attributes:
+        kind: Its name.
+        summary: What it emulates and what not, in one line.
+        options: Its options.
+        serve: Where its coroutine function is found, `module:NAME`: it receives options and `ready`, serves, and
+            ends when it is cancelled.
+    """
+
+    kind: str
+    summary: str
+    options: type[EmulatorOptions]
+    serve: str
+
+    def read_options(self, given: Mapping[str, str]) -> EmulatorOptions:
+        """Return the options given as texts.
+
+        Raises:
+            FlexcellError: there is no such option, or its value is not valid.
+        """
+        known = self.described()
+        for name in given:
+            if name not in known:
+                raise FlexcellError(f"{self.kind} has no option `{name}`", hint=did_you_mean(name, known))
+        try:
+            return msgspec.convert(given, self.options, strict=False)
+        except msgspec.ValidationError as error:
+            raise FlexcellError(f"the emulator {self.kind}: {error}", hint="flexcell emulate --list") from error
+
+    def described(self) -> dict[str, str]:
+        """Return each option with its default and description."""
+        schema = msgspec.json.schema(self.options)
+        properties = schema["$defs"][self.options.__name__]["properties"]
+        return {
+            name: f"{entry.get('default', '')!s}: {entry.get('description', '')}" for name, entry in properties.items()
+        }
+
+    def run(self, options: EmulatorOptions, ready: Ready) -> Coroutine[Any, Any, None]:
+        """Return the coroutine that serves until it is cancelled."""
+        module, _, attribute = self.serve.partition(":")
+        return cast("Coroutine[Any, Any, None]", getattr(importlib.import_module(module), attribute)(options, ready))
+
+
+def emulator(kind: str) -> Emulator:
+    """Return an emulator by name; raises RegistryError with similar names where there is none."""
+    offered = load_factory(EMULATORS, kind)
+    if not isinstance(offered, Emulator):
+        raise RegistryError(f"the entry point of the emulator {kind} offers none", where=kind)
+    return offered
+
+
+def installed_emulators() -> tuple[Emulator, ...]:
+    """Return all emulators, by name."""
+    return tuple(emulator(kind) for kind in registered_names(EMULATORS))

@@ -1,0 +1,1 @@
+"""The commands for real devices and their emulators."""

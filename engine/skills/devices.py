@@ -1,0 +1,19 @@
+"""Skill of real devices: a person permits motion, after a connection was lost or a fault occurred."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from engine.messages.device_state import DeviceState
+from engine.skill import Service
+
+
+class EnableDevice(Service[DeviceState], frozen=True, kw_only=True):
+    """Permit motion: activates the device, clears its faults, and returns its state. Its fingers or joints may move.
+
+    Refused while a run commands the device, so no behavior enables a device by itself. The reason is logged.
+    """
+
+    reason: Annotated[str, Meta(min_length=3, description="Who permits it and why, for the log")]
