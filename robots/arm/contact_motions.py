@@ -99,8 +99,8 @@ class ContactMotions:
         )
         if not touch_m_s >= _SLOWEST_TOUCH_M_S:
             raise GoalRejected(
-                f"a peak of {goal.peak_n:g} N on a surface of {goal.surface_n_m:g} N/m is a touch at {touch_m_s:.2g} m/s, "
-                f"slower than {_SLOWEST_TOUCH_M_S:g} m/s",
+                f"a peak of {goal.peak_n:g} N on a surface of {goal.surface_n_m:g} N/m is a touch at "
+                f"{touch_m_s:.2g} m/s, slower than {_SLOWEST_TOUCH_M_S:g} m/s",
                 where=handle.address,
                 hint="raise `peak_n`, or lower `surface_n_m`",
             )
