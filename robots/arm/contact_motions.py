@@ -25,6 +25,8 @@ from robots.port import Array, ContactCondition, JointTrajectory, Motion
 from robots.port.wrench import to_wrench
 
 _NO_DIRECTION = 1e-6
+# A hundredth of a millimetre a second: slower, a centimetre takes more than a quarter of an hour.
+_SLOWEST_TOUCH_M_S = 1e-5
 
 
 class ContactMotions:
@@ -95,6 +97,13 @@ class ContactMotions:
         touch_m_s = touch_speed_m_s(
             self._mass_kg(direction), peak_n=goal.peak_n, surface_n_m=goal.surface_n_m, friction_n=friction_n
         )
+        if not touch_m_s >= _SLOWEST_TOUCH_M_S:
+            raise GoalRejected(
+                f"a peak of {goal.peak_n:g} N on a surface of {goal.surface_n_m:g} N/m is a touch at "
+                f"{touch_m_s:.2g} m/s, slower than {_SLOWEST_TOUCH_M_S:g} m/s",
+                where=handle.address,
+                hint="raise `peak_n`, or lower `surface_n_m`",
+            )
         return plan_approach(
             goal.distance_m,
             clear_m=min(goal.clear_m, goal.distance_m),

@@ -135,3 +135,16 @@ async def test_a_peak_that_compensated_friction_alone_exceeds_is_rejected_with_t
     assert (end.status, cell.port.followed) == (GoalStatus.REJECTED, [])
     assert end.cause is not None
     assert "what compensates the friction of the joints alone pushes with" in end.cause.message
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("surface_n_m", [1e13, math.inf])
+async def test_a_surface_on_which_the_peak_leaves_no_speed_is_rejected(surface_n_m: float) -> None:
+    async with served() as cell:
+        goal = MoveUntilContact(
+            direction=(0.0, 0.0, -1.0), distance_m=0.05, force_n=8.0, peak_n=10.0, surface_n_m=surface_n_m
+        )
+        end = await cell.bus.send_goal(goal, to="left").result()
+    assert (end.status, cell.port.followed) == (GoalStatus.REJECTED, [])
+    assert end.cause is not None
+    assert "slower than 1e-05 m/s" in end.cause.message
