@@ -21,7 +21,8 @@ from robots.drivers.robotiq.gripper_registers import (
 from robots.drivers.robotiq.urcap_codec import STATUS_NAMES, decode_reply, status_of
 from tests.tiers import examples
 
-MANY = settings(max_examples=examples(200, nightly=100_000))
+MANY = settings(max_examples=examples(200, nightly=25_000))
+"""Nightly more than 10⁵ frames in each direction: four tests read replies, four feed several requests an example."""
 BYTE = st.integers(0, 255)
 WORD = st.integers(0, 0xFFFF)
 CHUNKS = st.lists(st.binary(max_size=40), max_size=8)
