@@ -77,8 +77,7 @@ class Dashboard:
         return f"{self._controller.runtime_state.name} {self._controller.program_name or '<unnamed>'}"
 
     def _stop(self) -> str:
-        if self._controller.program is None:
-            return "Failed to execute: stop"
+        # Also where none runs: the client library stops its script first, and needs this answer.
         self._controller.stop_program()
         return "Stopped"
 

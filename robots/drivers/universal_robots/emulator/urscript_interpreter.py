@@ -97,7 +97,15 @@ class UrscriptRun:
         except _HaltError:
             return False
         # What a program does with values of the wrong kind is an error of the program, as a wrong text is.
-        except (UrscriptError, UnreachableError, ArithmeticError, LookupError, TypeError, ValueError) as error:
+        except (
+            UrscriptError,
+            UnreachableError,
+            ArithmeticError,
+            LookupError,
+            TypeError,
+            ValueError,
+            RecursionError,
+        ) as error:
             self._controller.messages.append(f"program {self.name} ended: {error}")
             return False
         return True

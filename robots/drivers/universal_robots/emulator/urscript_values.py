@@ -63,7 +63,7 @@ def text_of(value: UrscriptValue) -> str:
     """Return a value as `textmsg` shows it."""
     if isinstance(value, UrscriptList):
         return ("p[" if value.is_pose else "[") + ", ".join(text_of(item) for item in value) + "]"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.6g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True, slots=True)
