@@ -53,6 +53,8 @@ class ControllerSideChannel:
                 writer.write(msgspec.json.encode(await self._answer(line)) + b"\n")
         except (ConnectionError, ValueError):
             pass  # the client has ended, or its line has no end
+        except asyncio.CancelledError:
+            pass  # the emulator ends: asyncio would report this as an error of the handler
         finally:
             writer.close()
 

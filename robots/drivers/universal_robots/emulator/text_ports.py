@@ -55,6 +55,8 @@ def _until_closed(serve: StreamHandler, faults: LinkFaults) -> StreamHandler:
             await serve(reader, writer)
         except (ConnectionError, ValueError, UrscriptError):
             pass  # the client has ended, or has sent a line or a program without an end
+        except asyncio.CancelledError:
+            pass  # the emulator ends: asyncio would report this as an error of the handler
         finally:
             faults.forget(transport)
             writer.close()
