@@ -14,7 +14,7 @@ import socket
 import sys
 import time
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any, NoReturn, cast
 
 from engine.host.child_process import set_parent_death_signal
 from robots.drivers.universal_robots.ur_messages import (
@@ -67,6 +67,7 @@ class _Session:
         self._control: Any = None
         self._motion: _Motion | None = None
         self._last_time_s = 0.0
+        self._tick_time_s = 0.0
 
     def handle(self, number: int, message: ToUrProcess) -> None:
         """Carry out a request; what the library raises or refuses is the answer."""
@@ -93,18 +94,30 @@ class _Session:
         """Kick the watchdog, look after the motion, and report."""
         if self._receive is None:
             return
+        time_s = self._receive.getTimestamp()
+        is_advancing, self._tick_time_s = time_s > self._tick_time_s, time_s
         if not self._receive.isConnected():
-            self._mailbox.send(LinkLost())
-            # The destructors of the library crash after a lost link.
-            os._exit(0)
-        if self._control is not None and self._control.isProgramRunning():
-            self._control.kickWatchdog()
-        self._check_motion()
+            self._end_lost()
+        # While nothing comes in, the control interface would wait for seconds, and the heartbeats with it.
+        if is_advancing and self._control is not None:
+            try:
+                if self._control.isProgramRunning():
+                    self._control.kickWatchdog()
+            except RuntimeError:
+                self._end_lost()
+            self._check_motion()
         if is_heartbeat:
             self._mailbox.send(self._heartbeat())
 
+    def _end_lost(self) -> NoReturn:
+        """End this process: the destructors of the library crash after a lost link."""
+        self._mailbox.send(LinkLost())
+        os._exit(0)
+
     def _enable(self, request: EnableMotion) -> None:
         """Set everything that a controller forgets, in the order in which a motion needs it."""
+        if not self._is_safe():
+            raise _Refusal("the safety system has stopped the arm")
         if self._control is None:
             self._control = importlib.import_module("rtde_control").RTDEControlInterface(self._host)
         elif not self._control.isProgramRunning():
@@ -113,6 +126,7 @@ class _Session:
             while not self._control.isProgramRunning():
                 if time.monotonic() > end_s:
                     raise _Refusal("Failed to start control script")
+                self._control.waitPeriod(self._control.initPeriod())
         _accept(self._control.setTcp(list(request.tcp_offset)), "setTcp")
         _accept(self._control.setPayload(request.payload_kg, list(request.payload_cog_m)), "setPayload")
         # The last: from here on there has to be a kick in each of its periods.

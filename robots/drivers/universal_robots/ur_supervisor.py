@@ -35,8 +35,8 @@ from robots.io.worker_process import WorkerProcess
 
 DASHBOARD_PORT = 29999
 _CODE = "from robots.drivers.universal_robots.ur_process_main import main; main()"
-_STALE_HEARTBEATS = 4
-_SILENCE_S = 0.4
+SILENCE_S = 0.35
+"""Without a heartbeat, or with heartbeats that repeat the time of the controller, for so long: lost."""
 _REPLY_LIMIT_S = 10.0
 _DASHBOARD_LIMIT_S = 1.0
 _RETRY_S = 0.5
@@ -49,15 +49,20 @@ class UrSupervisor:
 
     Args:
         host: The address of the controller.
+        silence_s: How long process and controller may be silent.
         on_fault: Called when the link or the process is lost.
     """
 
-    def __init__(self, host: str, *, on_fault: FaultHandler = lambda _fault: None) -> None:
+    def __init__(
+        self, host: str, *, silence_s: float = SILENCE_S, on_fault: FaultHandler = lambda _fault: None
+    ) -> None:
         self._host = host
+        self._silence_s = silence_s
+        self._patience_s = silence_s
         self._on_fault = on_fault
         self._process: WorkerProcess[ToUrProcess, FromUrProcess] | None = None
         self._fault: UrFault | None = None
-        self._stale = 0
+        self._fresh_at_s = 0.0
         self._silence: asyncio.TimerHandle | None = None
         self._is_enabled = False
         self._recovery: asyncio.Task[None] | None = None
@@ -95,11 +100,15 @@ class UrSupervisor:
         """Upload the script, arm the watchdog, set tool and payload; motions are accepted then. Raises UrFaultError."""
         self._require_safe()
         # The library waits up to seconds, and holds back the heartbeats meanwhile.
-        self._arm_silence(_REPLY_LIMIT_S)
-        answer = await self._ask(request)
-        self._arm_silence(_SILENCE_S)
+        self._be_patient(_REPLY_LIMIT_S)
+        try:
+            answer = await self._ask(request)
+        finally:
+            self._be_patient(self._silence_s)
         if not isinstance(answer, MotionEnabled):
-            raise self._refusal(answer)
+            # The latest heartbeat may be older than the stop that is the cause.
+            fault = dashboard_fault(await self._dashboard("safetystatus"))
+            raise self._error(fault, "the controller cannot move") if fault is not None else self._refusal(answer)
         self._is_enabled = True
 
     async def move_joints(self, q_rad: SixNumbers, *, speed_rad_s: float, acceleration_rad_s2: float) -> None:
@@ -125,7 +134,7 @@ class UrSupervisor:
         return await self._dashboard("stop")
 
     async def _connect(self) -> None:
-        self._fault, self._stale = None, 0
+        self._fault = None
         process = WorkerProcess[ToUrProcess, FromUrProcess](
             _CODE,
             FromUrProcess,
@@ -140,7 +149,7 @@ class UrSupervisor:
         if not isinstance(answer, ControllerConnected):
             self._end_process("it cannot read the controller")
             raise self._refusal(answer)
-        self._arm_silence(_SILENCE_S)
+        self._be_patient(self._silence_s)
         async with self.readings:
             await self.readings.wait_for(lambda: self.latest is not None or self._fault is not None)
         if self._fault is not None:
@@ -161,23 +170,33 @@ class UrSupervisor:
     def _notice(self, message: FromUrProcess) -> None:
         match message:
             case ControllerHeartbeat():
-                self._stale = 0 if message.is_fresh else self._stale + 1
-                if self._stale >= _STALE_HEARTBEATS:
+                now_s = asyncio.get_running_loop().time()
+                if message.is_fresh:
+                    self._fresh_at_s = now_s
+                elif now_s - self._fresh_at_s > self._patience_s:
                     self._lose(UrFault.CONTROLLER_SILENT, "its time does not advance")
                     return
                 self.latest = message
-                self._arm_silence(_SILENCE_S)
+                self._arm_silence()
                 self._notify()
             case LinkLost():
                 self._lose(UrFault.LINK_CUT, "the library has lost the controller")
             case _:
                 pass
 
-    def _arm_silence(self, limit_s: float) -> None:
+    def _be_patient(self, limit_s: float) -> None:
+        """Let process and controller be silent for so long from now on."""
+        if self._fault is None:
+            self._patience_s = limit_s
+            self._fresh_at_s = asyncio.get_running_loop().time()
+            self._arm_silence()
+
+    def _arm_silence(self) -> None:
         if self._silence is not None:
             self._silence.cancel()
+        reason = f"no heartbeat for {self._patience_s:g} s"
         loop = asyncio.get_running_loop()
-        self._silence = loop.call_later(limit_s, self._lose, UrFault.PROCESS_SILENT, f"no heartbeat for {limit_s:g} s")
+        self._silence = loop.call_later(self._patience_s, self._lose, UrFault.PROCESS_SILENT, reason)
 
     def _lose(self, fault: UrFault, reason: str) -> None:
         """Give up the process: nothing that it says counts any more."""

@@ -22,8 +22,9 @@ pytestmark = needs_client_library
 HOME: SixNumbers = (0.0, -math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2, 0.0)
 FAR: SixNumbers = (2.8, *HOME[1:])
 NEAR: SixNumbers = (0.3, *HOME[1:])
-# A busy machine may keep a process waiting for a tenth of a second.
-TOOL = EnableMotion(tcp_offset=(0.0, 0.0, 0.15, 0.0, 0.0, 0.0), payload_kg=1.5, watchdog_hz=4.0)
+# A busy machine may keep a process waiting for tenths of a second.
+TOOL = EnableMotion(tcp_offset=(0.0, 0.0, 0.15, 0.0, 0.0, 0.0), payload_kg=1.5, watchdog_hz=1.0)
+SILENCE_S = 2.0
 Cause = Callable[[EmulatedController, UrSupervisor], object]
 
 
@@ -60,7 +61,7 @@ def press(host: str, command: str) -> str:
 async def test_a_motion_ends_at_its_target_with_tool_and_payload_set() -> None:
     """And it is refused before it is enabled."""
     with EmulatedController() as controller:
-        async with UrSupervisor(controller.host) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S) as supervisor:
             refused = asyncio.create_task(supervisor.move_joints(NEAR, speed_rad_s=1.0, acceleration_rad_s2=4.0))
             assert await fault_of(refused) is UrFault.NOT_ENABLED
             await supervisor.enable_motion(TOOL)
@@ -75,7 +76,7 @@ async def test_a_motion_ends_at_its_target_with_tool_and_payload_set() -> None:
 async def test_a_stop_ends_a_motion_on_its_path_and_the_next_one_follows() -> None:
     """Without enabling it again."""
     with EmulatedController() as controller:
-        async with UrSupervisor(controller.host) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S) as supervisor:
             motion = await start_motion(controller, supervisor)
             supervisor.stop()
             assert await fault_of(motion) is UrFault.STOPPED
@@ -87,7 +88,7 @@ async def test_a_stop_ends_a_motion_on_its_path_and_the_next_one_follows() -> No
 async def test_a_hard_stop_ends_the_program_on_a_path_of_its_own() -> None:
     """By the dashboard; motion has to be enabled again."""
     with EmulatedController() as controller:
-        async with UrSupervisor(controller.host) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S) as supervisor:
             motion = await start_motion(controller, supervisor)
             assert await supervisor.hard_stop() == "Stopped"
             assert await fault_of(motion) is UrFault.PROGRAM_ENDED
@@ -97,13 +98,13 @@ async def test_a_hard_stop_ends_the_program_on_a_path_of_its_own() -> None:
 
 
 LOSSES: dict[str, tuple[UrFault, float, Cause]] = {
-    "drop": (UrFault.LINK_CUT, 0.5, lambda controller, _s: controller.ask("drop")),
-    "cut": (UrFault.LINK_CUT, 0.5, lambda controller, _s: controller.ask("cut")),
-    "freeze": (UrFault.CONTROLLER_SILENT, 1.0, lambda controller, _s: controller.ask("freeze")),
-    "killed process": (UrFault.PROCESS_ENDED, 0.5, lambda _c, s: os.kill(s.process_id, signal.SIGKILL)),
-    "hanging process": (UrFault.PROCESS_SILENT, 1.5, lambda _c, s: os.kill(s.process_id, signal.SIGSTOP)),
+    "drop": (UrFault.LINK_CUT, 1.5, lambda controller, _s: controller.ask("drop")),
+    "cut": (UrFault.LINK_CUT, 1.5, lambda controller, _s: controller.ask("cut")),
+    "freeze": (UrFault.CONTROLLER_SILENT, 4.0, lambda controller, _s: controller.ask("freeze")),
+    "killed process": (UrFault.PROCESS_ENDED, 1.5, lambda _c, s: os.kill(s.process_id, signal.SIGKILL)),
+    "hanging process": (UrFault.PROCESS_SILENT, 4.0, lambda _c, s: os.kill(s.process_id, signal.SIGSTOP)),
 }
-"""Cause, how soon it is noticed on a busy machine (usually 0.04, 0.3, 0.02 and 0.4 s), and how it comes about."""
+"""Cause, how soon it is noticed on a busy machine, and how it comes about."""
 
 
 @pytest.mark.parametrize("loss", LOSSES)
@@ -112,7 +113,7 @@ async def test_after_a_loss_the_arm_is_at_rest_and_only_reading_is_restored(loss
     fault, limit_s, cause = LOSSES[loss]
     reported: list[UrFault] = []
     with EmulatedController() as controller:
-        async with UrSupervisor(controller.host, on_fault=reported.append) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S, on_fault=reported.append) as supervisor:
             motion = await start_motion(controller, supervisor)
             first_process = supervisor.process_id
             before_s = time.monotonic()
@@ -134,7 +135,8 @@ async def test_after_a_loss_the_arm_is_at_rest_and_only_reading_is_restored(loss
             assert controller.state()["q"] == pytest.approx(NEAR)
     assert noticed_s < limit_s
     assert rest["q"][0] < FAR[0] - 0.5
-    assert rest["time_s"] - lost["time_s"] < 0.5
+    # The period of the watchdog, and the braking.
+    assert rest["time_s"] - lost["time_s"] < 1.5
 
 
 STOPS = {
@@ -148,7 +150,7 @@ async def test_a_stop_of_the_controller_is_named_and_ended_by_a_person_alone(sto
     """Motion cannot be enabled before."""
     fault, until, commands = STOPS[stop]
     with EmulatedController() as controller:
-        async with UrSupervisor(controller.host) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S) as supervisor:
             motion = await start_motion(controller, supervisor)
             controller.ask(stop)
             assert await fault_of(motion) is fault
@@ -156,6 +158,7 @@ async def test_a_stop_of_the_controller_is_named_and_ended_by_a_person_alone(sto
                 await supervisor.enable_motion(TOOL)
             assert caught.value.fault is fault
             assert caught.value.hint
+            assert not supervisor.is_motion_enabled
             state = await asyncio.to_thread(controller.wait, until)
             assert state["safety_mode"] != "NORMAL"
             controller.ask("release_emergency_stop")
@@ -177,7 +180,7 @@ async def test_a_stop_of_the_controller_is_named_and_ended_by_a_person_alone(sto
 async def test_a_second_client_and_local_control_are_named() -> None:
     """By what the library says of them."""
     with EmulatedController(series="e", model="ur10e") as controller:
-        async with UrSupervisor(controller.host) as supervisor:
+        async with UrSupervisor(controller.host, silence_s=SILENCE_S) as supervisor:
             controller.ask("remote", value=0)
             with pytest.raises(UrFaultError) as local:
                 await supervisor.enable_motion(TOOL)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import random
 import socket
+from contextlib import suppress
 
 import pytest
 
@@ -142,3 +144,54 @@ def test_a_controller_that_hangs_sends_the_same_time_for_ever() -> None:
         with ClientLibrary(controller.host, "control") as other:
             assert other.call("control.moveJ", NEAR, 1.0, 4.0) is True
         assert controller.state()["time_s"] > frozen_s
+
+
+def test_a_slow_link_delays_each_answer() -> None:
+    """By the clock of the controller, which goes on meanwhile."""
+    with (
+        EmulatedController() as controller,
+        socket.create_connection((controller.host, 29999), timeout=30) as dashboard,
+        dashboard.makefile("rw") as lines,
+    ):
+        lines.readline()
+        controller.ask("slow", value=0.3)
+        before_s = controller.state()["time_s"]
+        lines.write("robotmode\n")
+        lines.flush()
+        assert lines.readline() == "Robotmode: RUNNING\n"
+        assert controller.state()["time_s"] - before_s > 0.25
+
+
+def test_a_motion_ends_at_a_contact() -> None:
+    """In functions of URScript that only e-Series controllers have."""
+    with (
+        EmulatedController(series="e", model="ur5e") as controller,
+        ClientLibrary(controller.host, "control") as client,
+    ):
+        start_m = controller.state()["tcp_pose"][2]
+        client.send("control.moveUntilContact", [0.0, 0.0, -0.05, 0.0, 0.0, 0.0])
+        controller.wait("moving")
+        controller.ask("contact", value=1)
+        assert client.receive() is True
+        assert controller.wait("at_rest")["tcp_pose"][2] < start_m
+
+
+def test_garbage_on_any_port_moves_nothing_and_the_next_client_is_served() -> None:
+    """Bytes of any kind, with and without line ends."""
+    with EmulatedController() as controller:
+        before = controller.state()
+        for port in (29900, 29999, 30001, 30002, 30003, 30004):
+            for seed in range(4):
+                source = random.Random(seed)
+                with socket.create_connection((controller.host, port), timeout=30) as connection:
+                    with suppress(ConnectionError):
+                        connection.sendall(
+                            source.randbytes(30_000) + b"\n" + bytes(source.choices(range(128), k=5_000))
+                        )
+                    connection.shutdown(socket.SHUT_WR)
+                    with suppress(ConnectionError):
+                        while connection.recv(65_536):
+                            pass
+        assert controller.state()["q"] == before["q"]
+        with ClientLibrary(controller.host, "control") as client:
+            assert client.call("control.moveJ", NEAR, 1.0, 4.0) is True
