@@ -46,7 +46,7 @@ class MotionEnabled(msgspec.Struct, frozen=True, kw_only=True, tag="enabled"):
     """The answer to `EnableMotion`."""
 
 
-class MotionReport(msgspec.Struct, frozen=True, kw_only=True, tag="motion"):
+class UrMotionReport(msgspec.Struct, frozen=True, kw_only=True, tag="motion"):
     """The answer to `MoveJointsRequest`."""
 
     is_reached: bool
@@ -83,4 +83,4 @@ class LibraryFailure(msgspec.Struct, frozen=True, kw_only=True, tag="library_fai
 
 
 ToUrProcess = ConnectController | EnableMotion | MoveJointsRequest | StopMotion
-FromUrProcess = ControllerConnected | MotionEnabled | MotionReport | ControllerHeartbeat | LinkLost | LibraryFailure
+FromUrProcess = ControllerConnected | MotionEnabled | UrMotionReport | ControllerHeartbeat | LinkLost | LibraryFailure

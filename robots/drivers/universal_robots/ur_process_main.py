@@ -27,11 +27,11 @@ from robots.drivers.universal_robots.ur_messages import (
     LibraryFailure,
     LinkLost,
     MotionEnabled,
-    MotionReport,
     MoveJointsRequest,
     SixNumbers,
     StopMotion,
     ToUrProcess,
+    UrMotionReport,
 )
 from robots.io.message_socket import MessageSocket, PeerGone
 
@@ -168,7 +168,7 @@ class _Session:
     def _end_motion(self) -> None:
         motion, self._motion = self._motion, None
         assert motion is not None
-        report = MotionReport(
+        report = UrMotionReport(
             is_reached=self._is_reached(motion),
             is_stopped=motion.is_stopped,
             safety_bits=self._receive.getSafetyStatusBits(),

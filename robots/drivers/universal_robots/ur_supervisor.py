@@ -25,11 +25,11 @@ from robots.drivers.universal_robots.ur_messages import (
     LibraryFailure,
     LinkLost,
     MotionEnabled,
-    MotionReport,
     MoveJointsRequest,
     SixNumbers,
     StopMotion,
     ToUrProcess,
+    UrMotionReport,
 )
 from robots.io.worker_process import WorkerProcess
 
@@ -119,7 +119,7 @@ class UrSupervisor:
         report = await self._ask(
             MoveJointsRequest(q_rad=q_rad, speed_rad_s=speed_rad_s, acceleration_rad_s2=acceleration_rad_s2)
         )
-        if not isinstance(report, MotionReport):
+        if not isinstance(report, UrMotionReport):
             raise self._refusal(report)
         if not report.is_reached:
             raise await self._cause(report)
@@ -258,7 +258,7 @@ class UrSupervisor:
         if fault is not None:
             raise self._error(fault, "the controller cannot move")
 
-    async def _cause(self, report: MotionReport) -> UrFaultError:
+    async def _cause(self, report: UrMotionReport) -> UrFaultError:
         """Return why a motion has ended before its target."""
         fault = safety_fault(report.safety_bits, report.robot_mode)
         fault = fault or dashboard_fault(await self._dashboard("safetystatus"))

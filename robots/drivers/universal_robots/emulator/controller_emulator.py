@@ -10,15 +10,15 @@ from dataclasses import dataclass
 
 from robots.drivers.universal_robots.emulator.controller_side_channel import ControllerSideChannel
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
-from robots.drivers.universal_robots.emulator.dashboard import BANNER, Dashboard
+from robots.drivers.universal_robots.emulator.dashboard import BANNER, DashboardCommands
 from robots.drivers.universal_robots.emulator.emulated_arm import EmulatedArm
 from robots.drivers.universal_robots.emulator.link_faults import LinkFaults
 from robots.drivers.universal_robots.emulator.rtde_server import RtdeServer
 from robots.drivers.universal_robots.emulator.text_ports import dashboard_port, script_port
 from robots.drivers.universal_robots.emulator.ur_models import ARMS, SERIES
-from robots.drivers.universal_robots.emulator.urscript_interpreter import UrscriptRun
-from robots.drivers.universal_robots.emulator.urscript_parser import parse_program
-from robots.drivers.universal_robots.emulator.urscript_syntax import UrscriptError, UrscriptProgram
+from robots.drivers.universal_robots.emulator.urscript.urscript_interpreter import UrscriptRun
+from robots.drivers.universal_robots.emulator.urscript.urscript_parser import parse_program
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import UrscriptError, UrscriptProgram
 
 _MOST_LATE_CYCLES = 50
 _CACHED_PROGRAMS = 8
@@ -43,7 +43,7 @@ class ControllerEmulator:
         self._faults = LinkFaults()
         self._rtde = RtdeServer(self.controller, self._series, self._faults)
         self._side_channel = ControllerSideChannel(self.controller, self._faults)
-        self._dashboard = Dashboard(self.controller, self._series, model=model)
+        self._dashboard = DashboardCommands(self.controller, self._series, model=model)
         self._programs: OrderedDict[str, UrscriptProgram] = OrderedDict()
 
     @asynccontextmanager

@@ -13,7 +13,7 @@ SERIAL_NUMBER = "20265000001"
 _LOCAL_REFUSAL = "Command is not allowed due to local control"
 
 
-class Dashboard:
+class DashboardCommands:
     """Answers one line at a time."""
 
     def __init__(self, controller: ControllerState, series: ControllerSeries, *, model: str) -> None:

@@ -6,8 +6,8 @@ import asyncio
 from collections.abc import Awaitable, Callable
 
 from robots.drivers.universal_robots.emulator.link_faults import LinkFaults
-from robots.drivers.universal_robots.emulator.urscript_syntax import UrscriptError
-from robots.drivers.universal_robots.emulator.urscript_tokens import ProgramSplitter
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import UrscriptError
+from robots.drivers.universal_robots.emulator.urscript.urscript_tokens import ProgramSplitter
 
 _READ_BYTES = 65_536
 LineAnswer = Callable[[str], str]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
 from robots.drivers.universal_robots.emulator.emulated_arm import EmulatedArm
 from robots.drivers.universal_robots.emulator.ur_models import ARMS
-from robots.drivers.universal_robots.emulator.urscript_interpreter import UrscriptRun
-from robots.drivers.universal_robots.emulator.urscript_parser import parse_program
+from robots.drivers.universal_robots.emulator.urscript.urscript_interpreter import UrscriptRun
+from robots.drivers.universal_robots.emulator.urscript.urscript_parser import parse_program
 
 
 def new_controller() -> ControllerState:

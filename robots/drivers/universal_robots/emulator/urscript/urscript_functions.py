@@ -18,7 +18,7 @@ from robots.drivers.universal_robots.emulator.pose_vectors import (
     rotation_vector_of,
 )
 from robots.drivers.universal_robots.emulator.ur_models import JOINT_RANGE_RAD
-from robots.drivers.universal_robots.emulator.urscript_values import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_values import (
     UrscriptArguments,
     UrscriptList,
     UrscriptValue,

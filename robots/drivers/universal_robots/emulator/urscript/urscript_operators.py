@@ -5,8 +5,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping
 
-from robots.drivers.universal_robots.emulator.urscript_syntax import UrscriptError
-from robots.drivers.universal_robots.emulator.urscript_values import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import UrscriptError
+from robots.drivers.universal_robots.emulator.urscript.urscript_values import (
     UrscriptList,
     UrscriptValue,
     number_of,

@@ -17,7 +17,7 @@ from robots.drivers.universal_robots.emulator.arm_motions import (
 )
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
 from robots.drivers.universal_robots.emulator.pose_vectors import matrix_of
-from robots.drivers.universal_robots.emulator.urscript_values import UrscriptArguments, UrscriptList
+from robots.drivers.universal_robots.emulator.urscript.urscript_values import UrscriptArguments, UrscriptList
 from robots.port.arrays import Array
 
 TimedFunction = Callable[[ControllerState, UrscriptArguments], Motion]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from robots.drivers.universal_robots.emulator.urscript_syntax import UrscriptError
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import UrscriptError
 
 _TOKEN = re.compile(
     r"""(?P<space>[ \t\r]+|\#[^\n]*)

@@ -180,8 +180,8 @@ def test_a_secondary_program_runs_beside_the_main_one() -> None:
     """And does not end it."""
     controller = new_controller()
     execute("def main():\n while True:\n  sync()\n end\nend", cycles=3, controller=controller)
-    from robots.drivers.universal_robots.emulator.urscript_interpreter import UrscriptRun
-    from robots.drivers.universal_robots.emulator.urscript_parser import parse_program
+    from robots.drivers.universal_robots.emulator.urscript.urscript_interpreter import UrscriptRun
+    from robots.drivers.universal_robots.emulator.urscript.urscript_parser import parse_program
 
     controller.start_secondary(UrscriptRun(parse_program("sec s():\n set_digital_out(2, True)\nend"), controller))
     controller.run_cycle()

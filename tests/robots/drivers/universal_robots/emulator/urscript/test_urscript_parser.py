@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.drivers.universal_robots.emulator.urscript_parser import parse_program
-from robots.drivers.universal_robots.emulator.urscript_syntax import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_parser import parse_program
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import (
     Assignment,
     IndexExpression,
     ListLiteral,
@@ -15,7 +15,7 @@ from robots.drivers.universal_robots.emulator.urscript_syntax import (
     UrscriptError,
     VariableName,
 )
-from robots.drivers.universal_robots.emulator.urscript_tokens import ProgramSplitter
+from robots.drivers.universal_robots.emulator.urscript.urscript_tokens import ProgramSplitter
 from tests.robots.drivers.universal_robots.emulator.urscript_execution import execute
 
 WORDS = (

@@ -7,10 +7,10 @@ from enum import Enum, auto
 
 from robots.drivers.universal_robots.emulator.arm_motions import UnreachableError
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
-from robots.drivers.universal_robots.emulator.urscript_functions import FUNCTIONS
-from robots.drivers.universal_robots.emulator.urscript_motions import TIMED_FUNCTIONS
-from robots.drivers.universal_robots.emulator.urscript_operators import element, operate, truth
-from robots.drivers.universal_robots.emulator.urscript_syntax import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_functions import FUNCTIONS
+from robots.drivers.universal_robots.emulator.urscript.urscript_motions import TIMED_FUNCTIONS
+from robots.drivers.universal_robots.emulator.urscript.urscript_operators import element, operate, truth
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import (
     Assignment,
     BinaryExpression,
     CallExpression,
@@ -30,7 +30,7 @@ from robots.drivers.universal_robots.emulator.urscript_syntax import (
     VariableName,
     WhileStatement,
 )
-from robots.drivers.universal_robots.emulator.urscript_values import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_values import (
     UrscriptArguments,
     UrscriptList,
     UrscriptValue,

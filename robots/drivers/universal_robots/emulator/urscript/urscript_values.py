@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.drivers.universal_robots.emulator.urscript_syntax import UrscriptError
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import UrscriptError
 from robots.port.arrays import Array
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from robots.drivers.universal_robots.emulator.urscript_syntax import (
+from robots.drivers.universal_robots.emulator.urscript.urscript_syntax import (
     Assignment,
     BinaryExpression,
     CallExpression,
@@ -25,7 +25,7 @@ from robots.drivers.universal_robots.emulator.urscript_syntax import (
     VariableName,
     WhileStatement,
 )
-from robots.drivers.universal_robots.emulator.urscript_tokens import Token, tokenize
+from robots.drivers.universal_robots.emulator.urscript.urscript_tokens import Token, tokenize
 
 _SIMPLE = frozenset(("break", "continue", "halt", "pass", "enter_critical", "exit_critical"))
 _RESERVED = _SIMPLE | {
