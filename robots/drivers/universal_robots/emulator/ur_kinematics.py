@@ -13,7 +13,7 @@ from robots.port.arrays import Array
 
 _TWISTS = ((0.0, 1.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.0))
 """Cosine and sine of the angle between the axes of one joint and the next."""
-_SINGULAR = 1e-9
+_SINGULAR = 1e-6
 _POSE_ERROR = 1e-6
 
 
@@ -83,7 +83,7 @@ class UrKinematics:
         for q1 in (heading + reach, heading - reach):
             s1, c1 = math.sin(q1), math.cos(q1)
             cosine5 = (flange[0, 3] * s1 - flange[1, 3] * c1 - g.d4_m) / g.d6_m
-            if abs(cosine5) > 1.0 + 1e-9:
+            if abs(cosine5) > 1.0 + 1e-7:
                 continue
             bend = math.acos(min(1.0, max(-1.0, cosine5)))
             for q5 in (bend, -bend):
@@ -102,7 +102,7 @@ class UrKinematics:
         point = forearm @ np.array([0.0, -g.d4_m, 0.0, 1.0])
         length = math.hypot(point[0], point[1])
         cosine3 = (length * length - g.a2_m**2 - g.a3_m**2) / (2.0 * g.a2_m * g.a3_m)
-        if abs(cosine3) > 1.0 + 1e-9:
+        if abs(cosine3) > 1.0 + 1e-7:
             return
         bend = math.acos(min(1.0, max(-1.0, cosine3)))
         turn = math.atan2(forearm[1, 0], forearm[0, 0])

@@ -31,7 +31,7 @@ def test_a_protective_stop_ends_a_motion_and_is_unlocked_after_five_seconds() ->
         state = controller.wait("at_rest")
         assert 0.0 < state["q"][0] < FAR[0]
         assert state["safety_mode"] == "PROTECTIVE_STOP"
-        assert client.call("receive.isProtectiveStopped") is True
+        client.until("receive.isProtectiveStopped")
         assert client.call("receive.getSafetyMode") == 3
         assert client.call("dashboard.safetystatus") == "Safetystatus: PROTECTIVE_STOP"
         with pytest.raises(LibraryError, match="Cannot unlock protective stop until 5s after occurrence"):
@@ -64,7 +64,7 @@ def test_an_emergency_stop_takes_the_power_and_needs_power_and_brakes_again() ->
         controller.wait("moving")
         controller.ask("emergency_stop")
         assert client.receive() is False
-        assert client.call("receive.isEmergencyStopped") is True
+        client.until("receive.isEmergencyStopped")
         client.call("dashboard.powerOn")
         assert controller.state()["robot_mode"] == "POWER_OFF"
         controller.ask("release_emergency_stop")

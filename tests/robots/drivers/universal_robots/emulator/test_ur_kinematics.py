@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robots.drivers.universal_robots.emulator.pose_vectors import (
@@ -28,6 +28,7 @@ HOME = [0.0, -math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2, 0.0]
 VECTORS = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 
 
+@example("ur10", (1.75, 0.0, 0.0, -1.0, 0.0, 0.0))  # elbow and wrist straight at once
 @given(st.sampled_from(sorted(ARMS)), JOINTS)
 def test_the_inverse_of_a_pose_reaches_it(model: str, q: tuple[float, ...]) -> None:
     """From the configuration that has it, it is that configuration unless the wrist is straight."""
