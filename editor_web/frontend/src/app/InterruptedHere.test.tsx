@@ -24,7 +24,10 @@ it('shows the page once what stands above it can be drawn whole', async () => {
   live()
   show(page())
   expect(screen.queryByText('the page')).toBeNull()
-  await act(async () => answer([NAP]))
+  await act(() => {
+    answer([NAP])
+    return Promise.resolve()
+  })
   await screen.findByText('the page')
   expect(screen.getByRole('listitem', { name: 'Interrupted run of nap' })).toBeVisible()
 })
