@@ -38,7 +38,7 @@ from engine.project.run_request import (
 from engine.project.session_entries import StoredEntries
 from engine.project.session_operators import OperatorRoster, RunOperator
 from engine.project.session_recordings import SessionRecordings
-from engine.project.session_run import InterruptedRun, SessionRun, interrupted_run
+from engine.project.session_run import InterruptedRun, SessionRun, forget_oldest, interrupted_run, known_run
 from engine.project.session_stops import SessionStops
 from engine.project.stop_recovery import StopRecovery
 from engine.recording import RecordedDocuments
@@ -50,10 +50,8 @@ from engine.runtime.history.run_view import RunView
 from engine.runtime.history.userdata_history import UserdataHistory
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.runtime.run_options import RunOptions
-from engine.suggestions import did_you_mean
 
 RunCallback = Callable[[LiveRun, LiveRunChange], None]
-_KEPT_RUNS = 200
 
 
 class Session:
@@ -131,7 +129,7 @@ class Session:
 
     def run(self, run_id: str) -> RunView:
         """Return one run; raises FlexcellError if there is no such run."""
-        return self._known(run_id).view()
+        return known_run(self._runs, run_id).view()
 
     async def start(
         self,
@@ -242,7 +240,7 @@ class Session:
             ControlError: the run has ended.
             FlexcellError: there is no such run.
         """
-        started = self._known(run_id)
+        started = known_run(self._runs, run_id)
         if started.run.ended:
             raise ControlError("this run is over", where=run_id)
         return started.run.control
@@ -264,7 +262,7 @@ class Session:
             DocumentError: the file cannot be read or has errors.
         """
         self.control(run_id)
-        started = self._known(run_id)
+        started = known_run(self._runs, run_id)
         behavior, plan = await asyncio.to_thread(self._planned, started.behavior_id, started.run.plan.substitutes)
         kept = await asyncio.to_thread(version_snapshot, behavior)
         self.control(run_id)
@@ -278,7 +276,7 @@ class Session:
             JournalError: its journal cannot be read.
         """
         self.control(run_id)
-        return await self._known(run_id).run.step_back(path)
+        return await known_run(self._runs, run_id).run.step_back(path)
 
     def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
         """Read, check and plan a behavior, on a thread because it may be large."""
@@ -287,7 +285,7 @@ class Session:
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Request a run to stop and return immediately; has no effect on a run that has ended."""
-        self._known(run_id).stop(reason)
+        known_run(self._runs, run_id).stop(reason)
 
     async def stop_all(self, *, reason: str) -> None:
         """Stop every run, cancel every goal of any client, and return when every robot is at rest.
@@ -330,7 +328,7 @@ class Session:
 
     async def wait(self, run_id: str) -> RunView:
         """Wait until a run has ended and return it."""
-        started = self._known(run_id)
+        started = known_run(self._runs, run_id)
         if started.task is not None:
             await asyncio.wait({started.task})
         return self.run(run_id)
@@ -346,11 +344,11 @@ class Session:
 
     def live(self, run_id: str) -> LiveRun:
         """Return the state of a run, which is kept up to date; raises FlexcellError if there is no such run."""
-        return self._known(run_id).live
+        return known_run(self._runs, run_id).live
 
     def userdata(self, run_id: str) -> UserdataHistory:
         """Return an empty userdata history of a run, to be filled from its events; raises FlexcellError."""
-        run = self._known(run_id).run
+        run = known_run(self._runs, run_id).run
         return UserdataHistory(lambda: run.plan)
 
     def recording_files(self, run_id: str) -> tuple[Path, ...]:
@@ -400,7 +398,7 @@ class Session:
         self._runs[run.id] = started
         run.watch(lambda event: self._publish(started.live, event))
         started.task = asyncio.create_task(started.execute(), name=f"session run {run.id}")
-        self._forget_oldest()
+        forget_oldest(self._runs)
         return run.id
 
     def _cell_file(self) -> str | None:
@@ -408,14 +406,3 @@ class Session:
 
     def _unsubscribe(self, callback: RunCallback) -> None:
         self._callbacks = tuple(known for known in self._callbacks if known is not callback)
-
-    def _known(self, run_id: str) -> SessionRun:
-        if run_id not in self._runs:
-            raise FlexcellError(f"there is no run {run_id!r}", hint=did_you_mean(run_id, self._runs))
-        return self._runs[run_id]
-
-    def _forget_oldest(self) -> None:
-        """Limit the number of runs in memory; the journal keeps every run."""
-        over = [run_id for run_id, started in self._runs.items() if started.result is not None]
-        for run_id in over[: max(0, len(self._runs) - _KEPT_RUNS)]:
-            del self._runs[run_id]

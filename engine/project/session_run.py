@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import msgspec
 
 from engine.cause_chain import describe_cause
+from engine.errors import FlexcellError
 from engine.event import Event
 from engine.journal import RunRecord
 from engine.project.cell_runner import PreparedRun
 from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.run_view import RunView, run_duration_s
 from engine.runtime.run_result import RunResult
+from engine.suggestions import did_you_mean
+
+_KEPT_RUNS = 200
 
 
 class InterruptedRun(msgspec.Struct, frozen=True, kw_only=True):
@@ -78,3 +82,17 @@ def interrupted_run(record: RunRecord) -> InterruptedRun:
     return InterruptedRun(
         id=record.id, behavior=record.behavior, started_unix_s=record.started_unix_s, last_seq=record.last_seq
     )
+
+
+def known_run(runs: Mapping[str, SessionRun], run_id: str) -> SessionRun:
+    """Return a run; raises FlexcellError with similar ids if there is no such run."""
+    if run_id not in runs:
+        raise FlexcellError(f"there is no run {run_id!r}", hint=did_you_mean(run_id, runs))
+    return runs[run_id]
+
+
+def forget_oldest(runs: dict[str, SessionRun]) -> None:
+    """Limit the number of ended runs in memory; the journal keeps every run."""
+    ended = [run_id for run_id, started in runs.items() if started.result is not None]
+    for run_id in ended[: max(0, len(runs) - _KEPT_RUNS)]:
+        del runs[run_id]

@@ -54,7 +54,7 @@ class Simulation:
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
-        self._start_poses = self._qpos[cell.part_qpos].copy()
+        self._start_poses = self._qpos[cell.free_qpos].copy()
         self._set_home()
         self._contacts = ContactReader(cell, physics)
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
@@ -146,8 +146,8 @@ class Simulation:
             case MovePersonHand():
                 self._people.send(command.reach)
             case ResetFreeParts():
-                self._qpos[self._cell.part_qpos] = self._start_poses
-                self._qvel[self._cell.part_dof] = 0.0
+                self._qpos[self._cell.free_qpos] = self._start_poses
+                self._qvel[self._cell.free_dof] = 0.0
             case RestoreWorld():
                 self._restore(command.image)
             case StopAll() | ShutDownWorld():

@@ -54,9 +54,11 @@ class CellModel:
     frame_bodies: Indices
     parts: tuple[str, ...]
     part_qpos: Indices
-    """Addresses of the poses of free bodies, seven each: the parts, then those that nobody knows of."""
-    part_dof: Indices
-    """Addresses of their velocities, six each."""
+    """Addresses of the parts' poses, seven per part, in the order of `parts`."""
+    free_qpos: Indices
+    """Addresses of the poses of all free bodies, seven each: the parts, then those that nobody knows of."""
+    free_dof: Indices
+    """Addresses of the velocities of all free bodies, six each."""
     body_names: tuple[str, ...]
     people: tuple[PersonIndices, ...] = ()
 
@@ -95,8 +97,9 @@ def build_cell(scene: SimScene) -> CellModel:
         frames=frames + parts,
         frame_bodies=np.array([compiled.body(name).id for name in frames + parts], dtype=np.intp),
         parts=parts,
-        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts + unknown for i in range(7)),
-        part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts + unknown for i in range(6)),
+        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts for i in range(7)),
+        free_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts + unknown for i in range(7)),
+        free_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts + unknown for i in range(6)),
         body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
         people=tuple(person_indices(compiled, person) for person in scene.people),
     )
