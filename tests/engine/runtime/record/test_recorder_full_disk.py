@@ -52,7 +52,7 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(("inline", "for_s"), [(True, 0.0), (False, 1000.0)])
+@pytest.mark.parametrize(("inline", "for_s"), [(True, 0.0), (False, 3.0)])
 async def test_it_ends_errored_and_the_next_runs_again_once_there_is_space(
     project: Path, inline: bool, for_s: float
 ) -> None:
