@@ -60,7 +60,7 @@ def test_an_asynchronous_motion_reports_progress_and_is_stopped(
     move_to(client, HOME)
     assert client.call("control.moveJ", [1.5, *HOME[1:]], 0.5, 2.0, True) is True
     controller.wait("moving")
-    assert client.call("control.getAsyncOperationProgress") == 0
+    assert client.call("control.getAsyncOperationProgress") >= 0
     client.call("control.stopJ", 4.0)
     state = controller.wait("at_rest")
     assert 0.0 < state["q"][0] < 1.4
