@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Protocol, TypeVar
 
 Reading_co = TypeVar("Reading_co", covariant=True)
 Command_contra = TypeVar("Command_contra", contravariant=True)
-
-WireTrace = Callable[[bool, bytes], None]
-"""Receives every packet: whether it was sent, and its bytes."""
-
-
-class LinkError(Exception):
-    """The device cannot be reached, does not answer in time, or answers what is not understood; says which."""
 
 
 class DeviceTransport(Protocol[Reading_co, Command_contra]):

@@ -1,7 +1,7 @@
 """Reads a device in a thread of its own, and knows how fresh each reading is.
 
 A lost connection is opened again for reading only: no command is kept or repeated. While a motion is armed, the thread
-sends its stop command as soon as the event loop is silent for too long.
+sends its stop command as soon as the event loop is silent for too long, until that has succeeded.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 from engine.errors import RobotError
-from robots.drivers.device_transport import DeviceTransport, LinkError
+from robots.drivers.device_transport import DeviceTransport
+from robots.drivers.finite_values import non_finite_value
+from robots.io.wire.link_error import LinkError
 
 R = TypeVar("R")
 C = TypeVar("C")
@@ -149,6 +151,8 @@ class FreshLink(Generic[R, C]):
             self._post(lambda: self._refuse_start(self.lost_reason))
             self._post(lambda: self._listener.lost(self.lost_reason))
             raise
+        finally:
+            self.transport.close()
 
     def _exchange(self) -> None:
         opened = False
@@ -161,7 +165,7 @@ class FreshLink(Generic[R, C]):
                     opened = True
                 self._write_all()
                 asked_s = time.monotonic()
-                value = self.transport.read()
+                value = self._read()
                 good_s = asked_s
                 self._deliver(FreshReading(value=value, asked_s=asked_s, took_s=time.monotonic() - asked_s))
                 self._watch_loop()
@@ -175,8 +179,15 @@ class FreshLink(Generic[R, C]):
                     self._note_loss(str(error), good_s)
                 if not self._closing:
                     self._wake.wait(min(_RETRY_S, self.timing.stale_s / 4.0))
-        self.transport.close()
         self._fail_all("disconnected")
+
+    def _read(self) -> R:
+        value = self.transport.read()
+        # Before anybody sees it: not every protocol or library checks it.
+        problem = non_finite_value(value)
+        if problem:
+            raise LinkError(f"invalid reading: {problem}")
+        return value
 
     def _failed_to_start(self, error: LinkError, begun_s: float) -> bool:
         """Report a device that has never answered; true while it has not."""
@@ -214,8 +225,10 @@ class FreshLink(Generic[R, C]):
     def _watch_loop(self) -> None:
         command, silent_s = self._stop_command, time.monotonic() - self._loop_alive_s
         if command is not None and silent_s > self.timing.silence_s:
-            self._stop_command = None
             self.transport.write(command)
+            # Not before: a stop that fails is due on the next connection, the only command that is.
+            if self._stop_command is command:
+                self._stop_command = None
             self._post(lambda: self._listener.stopped_by_silence(silent_s))
 
     def _write_all(self) -> None:

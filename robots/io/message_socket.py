@@ -97,3 +97,17 @@ class MessageSocket(Generic[Received, Sent]):
         if not data:
             raise PeerGone
         self._arrived.extend((number, self._decode(payload)) for number, payload in self._reader.feed(data))
+
+
+class ClosedChannel(Generic[Received, Sent]):
+    """Replaces the socket once the parent is gone: receives nothing, discards everything."""
+
+    def receive(self) -> list[tuple[int, Received]]:
+        """Return nothing."""
+        return []
+
+    def post(self, message: Sent, *, number: int = 0) -> None:
+        """Drop a message."""
+
+    def flush(self) -> None:
+        """Nothing is buffered."""

@@ -15,6 +15,10 @@ def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
     """Return why nothing is held; empty if something is."""
     if not sample.on:
         return "the magnet is switched off"
+    if not sample.contact and sample.evidence == "sensor":
+        return "the sensor of the magnet detects no part"
+    if not sample.contact and sample.evidence == "not measured":
+        return "nothing measures whether the magnet holds a part"
     if not sample.contact:
         return "the magnet is on and touches nothing"
     if sample.pull_n < _HOLDS_SHARE * max_force_n:
@@ -25,7 +29,7 @@ def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
 
 def magnet_evidence(sample: MagnetSample) -> HoldEvidence:
     """Return what tells whether and what a magnet holds."""
-    return hold_evidence(sample.contact, otherwise="current")
+    return hold_evidence(sample.contact, otherwise=sample.evidence)
 
 
 def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:

@@ -17,5 +17,6 @@ MAGNET = ToolKind(
     release_goal=MagnetSwitch(on=False),
     mechanisms={"magnet": "robots.magnet.magnet_model:MagnetModel"},
     simulation="robots.magnet.magnet_simulation:MAGNET_SIMULATION",
+    switched="robots.magnet.switched_magnet:SWITCHED_MAGNET_KIND",
     states=(CheckHeld, Off, On),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+from engine.messages import HoldEvidence
 from robots.port.motion import Motion
 
 
@@ -17,6 +18,9 @@ class MagnetSample:
     pull_n: float
     contact: str = ""
     """A body's name if the device knows it, `?` for unknown, empty for none."""
+    evidence: HoldEvidence = "current"
+    """What tells that something is held where the contact has no name; without `current` the pull is that of its
+    model, and says nothing of it."""
 
 
 class MagnetPort(Protocol):

@@ -53,4 +53,8 @@ class MagnetServer:
         )
 
     async def _read(self, request: ReadMagnet) -> MagnetState:
+        return self.state()
+
+    def state(self) -> MagnetState:
+        """Return the measured state."""
         return magnet_state(self._port.sample(), max_force_n=self._port.max_force_n)

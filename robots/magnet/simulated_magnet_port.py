@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.magnet.magnet_port import MagnetSample
 from robots.sim.grip.tool_reading import ToolReading
-from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.ports.tool_ports import ToolLine
 
 
@@ -23,7 +23,7 @@ class SimMagnetPort:
         """Return the latest measurement."""
         return magnet_sample(self._line.reading())
 
-    def switch(self, *, on: bool) -> SimMotion:
+    def switch(self, *, on: bool) -> CommandedMotion:
         """Switch the field.
 
         Raises:

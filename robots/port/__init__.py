@@ -6,14 +6,14 @@ Arrays are float64, joints in the model's order, radians. All members are called
 loop thread; an implementation may run its control elsewhere but completes futures on that loop.
 """
 
-from robots.port.arm import ArmPort, ArmSample, StreamKind
+from robots.port.arm import ArmPort, ArmSample, DelayedSettings, StreamKind
 from robots.port.arrays import Array
 from robots.port.force_task import ForceRecord, ForceTask
 from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
-from robots.port.outputs import OutputPort
+from robots.port.outputs import ConfirmedOutputs, OutputOwner, OutputPort, SwitchableOutputs
 from robots.port.separation import MeasuredSeparation, PermittedSpeed, SeparationRule
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
@@ -21,7 +21,9 @@ __all__ = [
     "ArmPort",
     "ArmSample",
     "Array",
+    "ConfirmedOutputs",
     "ContactCondition",
+    "DelayedSettings",
     "ForceRecord",
     "ForceTask",
     "GraspCommand",
@@ -35,9 +37,11 @@ __all__ = [
     "MotionEnd",
     "MotionReport",
     "MotionStream",
+    "OutputOwner",
     "OutputPort",
     "PermittedSpeed",
     "SeparationRule",
     "StreamKind",
+    "SwitchableOutputs",
     "Tolerance",
 ]

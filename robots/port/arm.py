@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -35,6 +35,16 @@ class ArmSample:
     external_nm: Array = field(default_factory=lambda: np.zeros(0))
     wrench: Array = field(default_factory=lambda: np.zeros(6))
     reflex: bool = False
+
+
+@runtime_checkable
+class DelayedSettings(Protocol):
+    """An arm whose controller takes a while to adopt tool and load."""
+
+    @property
+    def settings_are_applied(self) -> bool:
+        """Whether the next motion is executed with the settings; true also where none can be, and in a motion."""
+        ...
 
 
 class ArmPort(Protocol):

@@ -10,6 +10,10 @@ from robots.port.gripper import GripperSample
 
 # In motion the pad force oscillates about the commanded one.
 FORCE_SHARE = 0.5
+_UNDETECTED = {
+    True: "the sensor of the gripper detects no part",
+    False: "nothing measures whether the gripper holds a part",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +28,8 @@ class GraspCommand:
 def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
     """Return why nothing is held; empty if something is."""
     left, right = sample.contacts
+    if sample.evidence != "width":
+        return "" if left and right else _UNDETECTED[sample.evidence == "sensor"]
     width = _millimetres(sample.width_m)
     if not left and not right:
         return f"fingers closed to {width} and touch nothing"
@@ -47,7 +53,7 @@ def held_part(sample: GripperSample) -> str:
 
 def grasp_evidence(sample: GripperSample) -> HoldEvidence:
     """Return what tells whether and what a gripper holds."""
-    return hold_evidence(*sample.contacts, otherwise="width")
+    return hold_evidence(*sample.contacts, otherwise=sample.evidence)
 
 
 def _name(body: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from engine.messages import HoldEvidence
 from robots.port.motion import Motion
 
 
@@ -18,6 +19,9 @@ class GripperSample:
     force_n: float
     contacts: tuple[str, str] = field(default=("", ""))
     """Contact of each pad: a body name if the device knows it, `?` for unknown, empty for none."""
+    evidence: HoldEvidence = "width"
+    """What tells that something is held where no contact has a name; without `width` opening and force are those that
+    were commanded, and say nothing of it."""
 
 
 class GripperPort(Protocol):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 
 class OutputPort(Protocol):
@@ -18,5 +18,41 @@ class OutputPort(Protocol):
 
         Raises:
             RobotError: there is no such output, or the device is lost.
+        """
+        ...
+
+
+class SwitchableOutputs(Protocol):
+    """The outputs of a device of the cell, as tools at them use them."""
+
+    @property
+    def values(self) -> tuple[bool, ...]:
+        """Present values."""
+        ...
+
+    async def switch(self, output: int, *, on: bool) -> None:
+        """Turn an output on or off and return when it is, as far as the device confirms it; raises RobotError."""
+        ...
+
+
+@runtime_checkable
+class OutputOwner(Protocol):
+    """A device of the cell that may have digital outputs."""
+
+    @property
+    def outputs(self) -> SwitchableOutputs | None:
+        """Its outputs; None without any, or while it is not connected."""
+        ...
+
+
+@runtime_checkable
+class ConfirmedOutputs(Protocol):
+    """Outputs that are read back from a real controller."""
+
+    async def confirmed(self) -> None:
+        """Return when the controller reads back what was set.
+
+        Raises:
+            RobotError: it reads something else, or the device is lost.
         """
         ...

@@ -19,4 +19,5 @@ GRIPPER = ToolKind(
         "claw": "robots.model.finger_mechanisms:ClawModel",
     },
     simulation="robots.standard_tools.gripper_simulation:GRIPPER_SIMULATION",
+    switched="robots.standard_tools.switched_gripper:SWITCHED_GRIPPER_KIND",
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.port import GripperSample
 from robots.sim.grip.tool_reading import ToolReading
-from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.ports.tool_ports import ToolLine
 
 
@@ -28,7 +28,7 @@ class SimGripperPort:
         """Return the latest measurement."""
         return gripper_sample(self._line.reading())
 
-    def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> SimMotion:
+    def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> CommandedMotion:
         """Move the fingers towards `width_m`, pressing with at most `force_n`.
 
         Raises:

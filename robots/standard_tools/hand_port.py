@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.port import HandSample
 from robots.sim.grip.tool_reading import ToolReading
-from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.ports.tool_ports import ToolLine
 
 
@@ -23,7 +23,7 @@ class SimHandPort:
         """Return the latest measurement."""
         return hand_sample(self._line.reading())
 
-    def close_to(self, *, share: float, time_s: float) -> SimMotion:
+    def close_to(self, *, share: float, time_s: float) -> CommandedMotion:
         """Close or open to `share`, 0 to 1, in `time_s` or as fast as the motor can.
 
         Raises:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import tty
 from collections.abc import Callable
@@ -34,6 +35,7 @@ class TcpStream:
         self._port = port
         self._server: asyncio.Server | None = None
         self._writers: set[asyncio.StreamWriter] = set()
+        self._connected: Callable[[], None] = lambda: None
 
     @property
     def clients(self) -> int:
@@ -51,12 +53,30 @@ class TcpStream:
         if self._server is not None:
             self._server.close()
             self._server = None
+        self.drop_clients()
+
+    def drop_clients(self) -> None:
+        """Drop all connections, and go on listening."""
         for writer in tuple(self._writers):
             writer.transport.abort()
+
+    async def unplug(self) -> None:
+        """Take the device away: nothing listens any more."""
+        await self.close()
+
+    def when_connected(self, callback: Callable[[], None]) -> None:
+        """Call `callback` for each new connection."""
+        self._connected = callback
+
+    def send(self, message: bytes) -> None:
+        """Send what nobody asked for to all clients, as the faults of the wire allow."""
+        for writer in tuple(self._writers):
+            deliver(message, self._faults, writer.write)
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         session = self._new_session()
         self._writers.add(writer)
+        self._connected()
         try:
             while received := await reader.read(_READ_BYTES):
                 answer(session, received, self._faults, writer.write)
@@ -94,19 +114,45 @@ class PtyStream:
     async def close(self) -> None:
         """Keep the line: a cut cable has both its ends."""
 
+    async def unplug(self) -> None:
+        """Take the device away: its name is gone, and a client that has it open fails. `open` makes another."""
+        ends, self._ends = self._ends, None
+        if ends is not None:
+            asyncio.get_running_loop().remove_reader(ends[0])
+            for end in ends:
+                os.close(end)
+
+    def send(self, message: bytes) -> None:
+        """Send what nobody asked for, as the faults of the wire allow."""
+        if self._ends is not None:
+            deliver(message, self._faults, self._write)
+
+    def _write(self, reply: bytes) -> None:
+        if self._ends is not None:
+            os.write(self._ends[0], reply)
+
     def _receive(self, ours: int) -> None:
-        answer(self._session, os.read(ours, _READ_BYTES), self._faults, lambda reply: os.write(ours, reply))
+        answer(self._session, os.read(ours, _READ_BYTES), self._faults, self._write)
 
 
 def answer(session: ProtocolSession, received: bytes, faults: WireFaults, write: Callable[[bytes], object]) -> None:
     """Answer received bytes, as the faults of the wire allow."""
-    if faults.cut or faults.frozen:
+    if not faults.cut and not faults.frozen:
+        deliver(session.feed(received), faults, write)
+
+
+def deliver(message: bytes, faults: WireFaults, write: Callable[[bytes], object]) -> None:
+    """Send bytes, as the faults of the wire allow."""
+    if not message or faults.cut or faults.frozen:
         return
-    reply = session.feed(received)
-    if not reply:
+    message = spoil(message) if faults.garbage else message
+    loop = asyncio.get_running_loop()
+    now_s = loop.time()
+    # Timers of one instant would have no order.
+    due_s = max(now_s + faults.slow_s, math.nextafter(faults.late_until_s.get(write, 0.0), math.inf))
+    if due_s <= now_s:
+        faults.late_until_s.pop(write, None)
+        write(message)
         return
-    reply = spoil(reply) if faults.garbage else reply
-    if faults.slow_s > 0.0:
-        asyncio.get_running_loop().call_later(faults.slow_s, write, reply)
-    else:
-        write(reply)
+    faults.late_until_s[write] = due_s
+    loop.call_at(due_s, write, message)

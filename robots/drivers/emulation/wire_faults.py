@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 
 @dataclass
@@ -18,6 +19,9 @@ class WireFaults:
     slow_s: float = 0.0
     garbage: bool = False
     refuse: bool = False
+    late_until_s: dict[Callable[[bytes], object], float] = field(default_factory=dict[Callable[[bytes], object], float])
+    """When the last late answer of each connection is sent, on the event loop's clock: bytes of one do not overtake
+    one another."""
 
 
 def spoil(reply: bytes) -> bytes:

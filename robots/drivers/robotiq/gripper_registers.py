@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
-from robots.drivers.device_transport import LinkError
+from robots.io.wire.link_error import LinkError
 
 COMMAND_ADDRESS = 0x03E8
 STATUS_ADDRESS = 0x07D0

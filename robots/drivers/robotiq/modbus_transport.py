@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import logging
+import socket
 from typing import Any
 
 from pymodbus import FramerType, ModbusException
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 from pymodbus.exceptions import ModbusIOException
 
-from robots.drivers.device_transport import LinkError, WireTrace
 from robots.drivers.robotiq.gripper_registers import (
     COMMAND_ADDRESS,
     STATUS_ADDRESS,
@@ -20,6 +20,9 @@ from robots.drivers.robotiq.gripper_registers import (
     encode_command,
 )
 from robots.drivers.robotiq.robotiq_options import ModbusTcp, RtuOverTcp, SerialLine
+from robots.io.wire.link_error import LinkError
+from robots.io.wire.tcp_connection import endpoints_of
+from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 # What pymodbus logs is raised as well, and becomes our own message.
 logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)
@@ -38,7 +41,7 @@ class ModbusTransport:
         connection: Where and how.
         unit: Modbus address of the gripper.
         timeout_s: Time limit of each request.
-        trace: Receives every packet.
+        tap: Notes the bytes of the connection.
     """
 
     def __init__(
@@ -47,12 +50,12 @@ class ModbusTransport:
         *,
         unit: int,
         timeout_s: float,
-        trace: WireTrace | None = None,
+        tap: WireTap = NO_TAP,
     ) -> None:
         self._connection = connection
         self._unit = unit
         self._timeout_s = timeout_s
-        self._trace = trace
+        self._tap = tap
         self._client: ModbusSerialClient | ModbusTcpClient | None = None
         self._failed = False
         self._received = b""
@@ -85,6 +88,8 @@ class ModbusTransport:
             raise LinkError(f"cannot connect: {error}") from error
         if not connected:
             raise LinkError("cannot connect")
+        connection: object = client.socket
+        self._tap.opened(endpoints_of(connection) if isinstance(connection, socket.socket) else None)
         if isinstance(client, ModbusSerialClient) and self._failed:
             self._drain(client)
 
@@ -93,6 +98,7 @@ class ModbusTransport:
         if self._client is not None:
             self._client.close()
             self._client = None
+            self._tap.closed()
 
     def read(self) -> GripperStatus:
         """Read the status registers."""
@@ -117,10 +123,10 @@ class ModbusTransport:
                 return ModbusSerialClient(
                     line.device, framer=FramerType.RTU, baudrate=line.baud, bytesize=8, parity="N", stopbits=1, **common
                 )
-            case RtuOverTcp() as socket:
-                return ModbusTcpClient(socket.host, port=socket.port, framer=FramerType.RTU, **common)
-            case ModbusTcp() as socket:
-                return ModbusTcpClient(socket.host, port=socket.port, framer=FramerType.SOCKET, **common)
+            case RtuOverTcp() as gateway:
+                return ModbusTcpClient(gateway.host, port=gateway.port, framer=FramerType.RTU, **common)
+            case ModbusTcp() as gateway:
+                return ModbusTcpClient(gateway.host, port=gateway.port, framer=FramerType.SOCKET, **common)
 
     def _drain(self, client: ModbusSerialClient) -> None:
         """Wait until the line is quiet: RTU replies have no number, and a late one would answer the next request."""
@@ -160,8 +166,10 @@ class ModbusTransport:
 
     def _traced(self, sent: bool, packet: bytes) -> bytes:  # noqa: FBT001 - the signature is pymodbus's
         self._received += b"" if sent else packet
-        if self._trace is not None and packet:
-            self._trace(sent, packet)
+        if packet and sent:
+            self._tap.sent(packet)
+        elif packet:
+            self._tap.received(packet)
         return packet
 
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from engine.cell.drivers import DeviceReport
+from engine.cell.drivers import DeviceContext, DeviceReport
 from engine.clock import Clock
 from engine.errors import CellError
-from robots.drivers.device_transport import DeviceTransport, WireTrace
+from robots.drivers.device_transport import DeviceTransport
 from robots.drivers.fresh_link import LinkTiming
 from robots.drivers.robotiq.gripper_registers import GripperCommand, GripperStatus
 from robots.drivers.robotiq.robotiq_driver import ROBOTIQ
 from robots.drivers.robotiq.robotiq_gripper import RobotiqGripper
 from robots.drivers.robotiq.robotiq_options import RobotiqOptions, UrcapSocket
 from robots.drivers.robotiq.urcap_transport import UrcapTransport
+from robots.io.wire.wire_capture import WireCapture
+from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 
-def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, trace: WireTrace | None = None) -> RobotiqGripper:
+def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, context: DeviceContext) -> RobotiqGripper:
     """Return the gripper, not yet connected.
 
     Raises:
@@ -29,7 +31,8 @@ def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, trace: Wire
     if not rising:
         hint = "write pairs of counts and metres from open to closed"
         raise CellError("`widths` must have rising counts and falling openings", where=name, hint=hint)
-    transport = new_transport(options, trace=trace)
+    capture = WireCapture(context.capture, device=name)
+    transport = new_transport(options, tap=capture.tap(options.protocol))
     about = DeviceReport(
         device=name,
         driver=ROBOTIQ.kind,
@@ -41,16 +44,14 @@ def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, trace: Wire
     return RobotiqGripper(name, transport, timing=timing, widths=options.widths, about=about)
 
 
-def new_transport(
-    options: RobotiqOptions, *, trace: WireTrace | None = None
-) -> DeviceTransport[GripperStatus, GripperCommand]:
+def new_transport(options: RobotiqOptions, *, tap: WireTap = NO_TAP) -> DeviceTransport[GripperStatus, GripperCommand]:
     """Return the transport of a connection; raises CellError where a package is missing."""
     connection = options.connection
     if isinstance(connection, UrcapSocket):
-        return UrcapTransport(connection, timeout_s=options.timeout_s, trace=trace)
+        return UrcapTransport(connection, timeout_s=options.timeout_s, tap=tap)
     try:
         from robots.drivers.robotiq.modbus_transport import ModbusTransport
     except ImportError as error:
         hint = "pip install 'flexcell[robotiq]'"
         raise CellError(f"the driver robotiq needs a package: {error}", hint=hint) from error
-    return ModbusTransport(connection, unit=options.unit, timeout_s=options.timeout_s, trace=trace)
+    return ModbusTransport(connection, unit=options.unit, timeout_s=options.timeout_s, tap=tap)

@@ -11,6 +11,10 @@ ROBOTIQ = Driver(
     models=frozenset({"robotiq_2f85"}),
     options=RobotiqOptions,
     capabilities=frozenset({"gripper"}),
+    enabling=(
+        "Activates the gripper where it is not active, which resets its fault, opens and closes the fingers, and drops "
+        "what they hold. A gripper that is active stays as it is."
+    ),
     ports={"rtu_over_tcp": 54321, "modbus_tcp": 502, "urcap": 63352},
     proven=(
         "Never run on hardware. Tested over pty and sockets against its emulator, which the foreign client "

@@ -64,3 +64,16 @@ class RobotiqOptions(DriverOptions, frozen=True, kw_only=True, tag="robotiq"):
     stale_s: Annotated[
         float, Meta(ge=0.1, le=10.0, description="Seconds without a reading until the connection counts as lost")
     ] = 0.5
+
+    @property
+    def protocol(self) -> str:
+        """What is spoken on the connection."""
+        match self.connection:
+            case SerialLine():
+                return "modbus_rtu"
+            case RtuOverTcp():
+                return "rtu_over_tcp"
+            case ModbusTcp():
+                return "modbus_tcp"
+            case UrcapSocket():
+                return "urcap"

@@ -22,6 +22,7 @@ from robots.drivers.robotiq.gripper_units import (
     width_of_count,
 )
 from robots.drivers.robotiq.robotiq_motion import RobotiqMotion, stop_command
+from robots.drivers.tool_device import enable_words
 from robots.port import GripperSample
 
 _GRACE_S = 2.0
@@ -170,8 +171,3 @@ def _note_failure(written: asyncio.Future[float]) -> None:
     error = written.exception()
     if error is not None:
         _log.error("the command of a gripper with a fault could not be withdrawn: %s", error)
-
-
-def enable_words(name: str) -> str:
-    """Return the command by which a person permits motion."""
-    return f'flexcell bus call {name}/enable_device \'{{"reason": "…"}}\''

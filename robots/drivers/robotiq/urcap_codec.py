@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from robots.drivers.device_transport import LinkError
 from robots.drivers.robotiq.gripper_registers import ActivationStatus, GripperCommand, GripperStatus, ObjectStatus
+from robots.io.wire.link_error import LinkError
 
 ACKNOWLEDGED = b"ack"
 NOT_UNDERSTOOD = b"?"

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Callable
-from contextlib import suppress
 
-from robots.drivers.device_transport import LinkError, WireTrace
 from robots.drivers.robotiq.gripper_registers import GripperCommand, GripperStatus
 from robots.drivers.robotiq.robotiq_options import UrcapSocket
 from robots.drivers.robotiq.urcap_codec import (
@@ -18,6 +15,9 @@ from robots.drivers.robotiq.urcap_codec import (
     encode_set,
     status_of,
 )
+from robots.io.wire.link_error import LinkError
+from robots.io.wire.tcp_connection import TcpConnection
+from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 _MOST_BYTES = 256
 _SHOWN_BYTES = 12
@@ -29,14 +29,14 @@ class UrcapTransport:
     Args:
         connection: Where the server is.
         timeout_s: Time limit of each request.
-        trace: Receives every packet.
+        tap: Notes the bytes of the connection.
     """
 
-    def __init__(self, connection: UrcapSocket, *, timeout_s: float, trace: WireTrace | None = None) -> None:
+    def __init__(self, connection: UrcapSocket, *, timeout_s: float, tap: WireTap = NO_TAP) -> None:
         self._connection = connection
         self._timeout_s = timeout_s
-        self._trace = trace
-        self._socket: socket.socket | None = None
+        self._tap = tap
+        self._socket: TcpConnection | None = None
 
     @property
     def address(self) -> str:
@@ -51,18 +51,16 @@ class UrcapTransport:
     def open(self) -> None:
         """Connect; commands nothing."""
         try:
-            self._socket = socket.create_connection(
-                (self._connection.host, self._connection.port), timeout=self._timeout_s
+            self._socket = TcpConnection(
+                (self._connection.host, self._connection.port), timeout_s=self._timeout_s, tap=self._tap
             )
         except OSError as error:
             raise LinkError(f"cannot connect: {error.strerror or error}") from error
-        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def close(self) -> None:
         """Disconnect."""
         if self._socket is not None:
-            with suppress(OSError):  # it is closed because it failed, or because nobody needs it any more
-                self._socket.close()
+            self._socket.close()
             self._socket = None
 
     def read(self) -> GripperStatus:
@@ -86,10 +84,9 @@ class UrcapTransport:
             raise LinkError("not connected")
         reply = b""
         try:
-            connection.sendall(request)
-            self._traced(sent=True, packet=request)
+            connection.send(request)
             while not complete(reply):
-                received = connection.recv(_MOST_BYTES)
+                received = connection.receive(_MOST_BYTES)
                 if not received:
                     raise LinkError("the connection was closed by the device")
                 reply += received
@@ -100,9 +97,4 @@ class UrcapTransport:
             raise LinkError(f"no valid answer within {self._timeout_s:g} s{garbage}") from error
         except OSError as error:
             raise LinkError(f"the connection failed: {error.strerror or error}") from error
-        self._traced(sent=False, packet=reply)
         return reply
-
-    def _traced(self, *, sent: bool, packet: bytes) -> None:
-        if self._trace is not None:
-            self._trace(sent, packet)

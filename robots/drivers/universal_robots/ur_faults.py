@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from engine.errors import RobotError
+from robots.drivers.arm.joint_controller import ControllerLost, MotionRefused
 
 
 class UrFault(Enum):
@@ -21,13 +21,11 @@ class UrFault(Enum):
     NO_CLIENT_LIBRARY = "no client library"
     UNREACHABLE_CONTROLLER = "controller unreachable"
     PROGRAM_ENDED = "program ended"
-    NOT_ENABLED = "motion not enabled"
+    PROGRAM_PAUSED = "program paused"
+    WRONG_VERSION = "wrong version"
     REFUSED = "refused"
-    STOPPED = "stopped"
     LINK_CUT = "link cut"
-    CONTROLLER_SILENT = "controller silent"
-    PROCESS_SILENT = "process silent"
-    PROCESS_ENDED = "process ended"
+    LINK_SLOW = "link slow"
 
 
 _REMEDIES = {
@@ -39,14 +37,15 @@ _REMEDIES = {
     UrFault.POWER_OFF: "switch on power and release the brakes",
     UrFault.LOCAL_CONTROL: "choose remote control on the teach pendant",
     UrFault.IN_USE: "end the other client, EtherNet/IP, PROFINET or Modbus unit that writes the same registers",
-    UrFault.NO_CLIENT_LIBRARY: "install flexcell[ur]; its wheels end at Python 3.12 on Linux x86-64",
+    UrFault.NO_CLIENT_LIBRARY: (
+        "choose `client: script`, or install flexcell[ur], whose wheels end at Python 3.12 on Linux x86-64"
+    ),
     UrFault.UNREACHABLE_CONTROLLER: "check its address, cable and power",
     UrFault.PROGRAM_ENDED: "look at the log of the controller: a pose out of reach or the watchdog ends a program",
-    UrFault.NOT_ENABLED: "enable motion; after a lost link it has to be enabled again",
+    UrFault.PROGRAM_PAUSED: "stop the program at the teach pendant, then enable the arm",
+    UrFault.WRONG_VERSION: "it needs PolyScope 3.5 or newer with the service RTDE",
+    UrFault.LINK_SLOW: "check the network: the controller needs one of its own",
     UrFault.LINK_CUT: "check cable and controller; only reading is restored by itself",
-    UrFault.CONTROLLER_SILENT: "check the controller; only reading is restored by itself",
-    UrFault.PROCESS_SILENT: "only reading is restored by itself; enable motion again",
-    UrFault.PROCESS_ENDED: "only reading is restored by itself; enable motion again",
 }
 # The first of these bits of `safety_status_bits` that is set is the cause.
 _SAFETY_BITS = (
@@ -70,12 +69,9 @@ _SAFETY_WORDS = {
 _RUNNING_MODE = 7
 
 
-class UrFaultError(RobotError):
-    """A failure of a controller with its cause."""
-
-    def __init__(self, fault: UrFault, message: str, *, where: str) -> None:
-        super().__init__(f"{fault.value}: {message}", where=where, hint=_REMEDIES.get(fault))
-        self.fault = fault
+def remedy(fault: UrFault) -> str:
+    """Return what a person can do about it."""
+    return _REMEDIES.get(fault, "")
 
 
 def safety_fault(safety_bits: int, robot_mode: int) -> UrFault | None:
@@ -103,3 +99,18 @@ def library_fault(message: str) -> UrFault:
         if words in message:
             return fault
     return UrFault.REFUSED
+
+
+def stop_words(fault: UrFault) -> str:
+    """Return what a reading says of a controller that does not move."""
+    return f"{fault.value}: the controller has stopped the arm"
+
+
+def refused(fault: UrFault, message: str) -> MotionRefused:
+    """Return what to raise where the controller does not move."""
+    return MotionRefused(f"{fault.value}: {message}", hint=remedy(fault))
+
+
+def lost(fault: UrFault, message: str) -> ControllerLost:
+    """Return what to raise where the controller is lost."""
+    return ControllerLost(f"{fault.value}: {message}", hint=remedy(fault))

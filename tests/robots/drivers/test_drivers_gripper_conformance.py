@@ -1,4 +1,4 @@
-"""One set of tests for grippers: the simulation, and the Robotiq driver with its emulator over each transport."""
+"""One set of tests for grippers: the simulation, and drivers with their emulators over each transport."""
 
 from __future__ import annotations
 
@@ -17,10 +17,25 @@ from engine.skills.gripper import GripperGrasp, GripperMove, GripperOpen, ReadGr
 from robots.gripper import GripperServer
 from robots.port import GripperPort, MotionEnd
 from robots.scene.sim_scene import PartBody
-from tests.robots.drivers.emulated_gripper import CONNECTIONS, HAND, Emulators, driven
+from robots.standard_tools.switched_gripper import SwitchedGripperPort
+from tests.robots.drivers.emulated_device import Emulators
+from tests.robots.drivers.emulated_gripper import CONNECTIONS, HAND, driven, emulated
+from tests.robots.drivers.franka.emulated_cabinet import needs_franka
+from tests.robots.drivers.franka_hand.emulated_franka_hand import (
+    FRANKA_HAND_CONNECTIONS,
+    driven_franka_hand,
+    emulated_franka_hand,
+)
+from tests.robots.drivers.switched_tool.switched_under_test import SENSOR, detect, switched
 from tests.robots.sim.tool_cell import ARM, block, reaching, scene
 
-SUBJECTS = ("simulation", *CONNECTIONS)
+SUBJECTS = (
+    "simulation",
+    *CONNECTIONS,
+    *(pytest.param(connection, id="franka_hand", marks=needs_franka) for connection in FRANKA_HAND_CONNECTIONS),
+)
+SWITCHED = "switched"
+"""A gripper on outputs: it opens and closes, and nothing measures an opening."""
 WIDTH_M = 0.05
 GRASP = GripperGrasp(width_m=WIDTH_M, force_n=60.0, speed_m_s=0.15)
 
@@ -55,7 +70,7 @@ async def simulated(object_m: float | None) -> AsyncGenerator[Gripper]:
 @pytest.fixture(scope="module")
 def emulators() -> Generator[Emulators]:
     """The emulators of this file, each started at its first use."""
-    with Emulators() as started:
+    with Emulators(lambda name: emulated(name) if name in CONNECTIONS else emulated_franka_hand(name)) as started:
         yield started
 
 
@@ -66,28 +81,37 @@ def run(subject: str, emulators: Emulators, scenario: Scenario, *, object_m: flo
         async with simulated(object_m) as gripper:
             await scenario(gripper)
 
+    async def on_outputs() -> None:
+        async with switched("gripper", sensor={"topic": SENSOR}, hold_s=0.3, release_s=0.3) as (bus, device, _):
+            detect(bus, part=object_m is not None)
+            await scenario(Gripper(bus, SwitchedGripperPort(device.drive)))
+
     async def in_reality() -> None:
         emulator = emulators.of(subject)
         emulator.do("object", width_m=None)
-        async with driven(emulator) as (bus, device):
+        connect = driven if subject in CONNECTIONS else driven_franka_hand
+        async with connect(emulator) as (bus, device):
             await bus.send_goal(GripperOpen(speed_m_s=0.15), to=HAND).result()
             emulator.do("object", width_m=object_m)
             await scenario(Gripper(bus, device.port))
 
     if subject == "simulation":
         run_virtual(in_simulation())
+    elif subject == SWITCHED:
+        run_virtual(on_outputs())
     else:
         asyncio.run(in_reality())
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", [*SUBJECTS, SWITCHED])
 def test_a_part_of_the_expected_width_is_held_until_the_gripper_opens(subject: str, emulators: Emulators) -> None:
     async def scenario(gripper: Gripper) -> None:
         grasp = await gripper.bus.send_goal(GRASP, to=HAND).result()
         assert grasp.result is not None
         assert (grasp.status, grasp.result.held, grasp.result.reason) == (GoalStatus.SUCCEEDED, True, "")
-        assert grasp.result.width_m == pytest.approx(WIDTH_M, abs=0.001)
-        assert grasp.result.force_n == pytest.approx(60.0, abs=2.0)
+        if subject != SWITCHED:
+            assert grasp.result.width_m == pytest.approx(WIDTH_M, abs=0.001)
+            assert grasp.result.force_n == pytest.approx(60.0, abs=2.0)
         assert (await gripper.bus.call(ReadGripper(), to=HAND)).held
         opened = await gripper.bus.send_goal(GripperOpen(speed_m_s=0.15), to=HAND).result()
         assert opened.result is not None
@@ -97,13 +121,14 @@ def test_a_part_of_the_expected_width_is_held_until_the_gripper_opens(subject: s
     run(subject, emulators, scenario, object_m=WIDTH_M)
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", [*SUBJECTS, SWITCHED])
 def test_fingers_that_meet_nothing_hold_nothing(subject: str, emulators: Emulators) -> None:
     async def scenario(gripper: Gripper) -> None:
         grasp = await gripper.bus.send_goal(GRASP, to=HAND).result()
         assert grasp.result is not None
         assert (grasp.status, grasp.result.held) == (GoalStatus.SUCCEEDED, False)
-        assert grasp.result.reason == "fingers closed to 0.0 mm and touch nothing"
+        nothing = ("fingers closed to 0.0 mm and touch nothing", "the sensor of the gripper detects no part")
+        assert grasp.result.reason == nothing[subject == SWITCHED]
 
     run(subject, emulators, scenario)
 
@@ -170,7 +195,7 @@ def test_a_held_motion_rests_and_resumes_to_its_goal(subject: str, emulators: Em
     run(subject, emulators, scenario)
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", [*SUBJECTS, SWITCHED])
 def test_a_second_motion_and_senseless_values_are_refused_with_the_reason(subject: str, emulators: Emulators) -> None:
     async def scenario(gripper: Gripper) -> None:
         for width_m, speed_m_s, force_n in ((float("nan"), 0.1, 30.0), (0.01, 0.0, 30.0), (0.01, 0.1, -1.0)):
@@ -185,7 +210,7 @@ def test_a_second_motion_and_senseless_values_are_refused_with_the_reason(subjec
     run(subject, emulators, scenario)
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", [*SUBJECTS, SWITCHED])
 def test_goals_beyond_the_gripper_are_rejected_before_it_moves(subject: str, emulators: Emulators) -> None:
     async def scenario(gripper: Gripper) -> None:
         wide = await gripper.bus.send_goal(GripperMove(width_m=0.2), to=HAND).result()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import AsyncGenerator
@@ -11,8 +12,8 @@ import pytest
 
 from engine.clock import new_clock
 from engine.errors import RobotError
-from robots.drivers.device_transport import LinkError
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
+from robots.io.wire.link_error import LinkError
 
 TIMING = LinkTiming(period_s=0.005, stale_s=0.2, silence_s=0.15)
 
@@ -26,7 +27,8 @@ class FakeTransport:
     def __init__(self) -> None:
         self.fails = ""
         self.defect = False
-        self.opened = 0
+        self.opened = self.closed = self.failing_stops = 0
+        self.value: float | None = None
         self.log: list[str] = []
 
     def open(self) -> None:
@@ -34,15 +36,18 @@ class FakeTransport:
         self.opened += 1
 
     def close(self) -> None:
-        """There is nothing to close."""
+        self.closed += 1
 
-    def read(self) -> int:
+    def read(self) -> float:
         self._check()
         self.log.append("read")
-        return len(self.log)
+        return len(self.log) if self.value is None else self.value
 
     def write(self, command: str) -> None:
         self._check()
+        if command == "stop" and self.failing_stops:
+            self.failing_stops -= 1
+            raise LinkError("it broke in the stop")
         self.log.append(command)
 
     def _check(self) -> None:
@@ -59,7 +64,7 @@ class Listener:
         self.readings = 0
         self.events: list[str] = []
 
-    def read(self, reading: FreshReading[int]) -> None:
+    def read(self, reading: FreshReading[float]) -> None:
         self.readings += 1
 
     def lost(self, reason: str) -> None:
@@ -73,9 +78,9 @@ class Listener:
 
 
 @asynccontextmanager
-async def linked() -> AsyncGenerator[tuple[FreshLink[int, str], FakeTransport, Listener]]:
+async def linked() -> AsyncGenerator[tuple[FreshLink[float, str], FakeTransport, Listener]]:
     transport, listener = FakeTransport(), Listener()
-    link = FreshLink[int, str](transport, listener, TIMING)
+    link = FreshLink[float, str](transport, listener, TIMING)
     await link.start()
     try:
         yield link, transport, listener
@@ -91,7 +96,7 @@ async def until_heard(listener: Listener, event: str) -> None:
 async def test_a_device_that_never_answers_is_refused_with_its_address_and_what_to_check() -> None:
     transport = FakeTransport()
     transport.fails = "no answer"
-    link = FreshLink[int, str](transport, Listener(), TIMING)
+    link = FreshLink[float, str](transport, Listener(), TIMING)
     with pytest.raises(RobotError, match=r"nowhere:1: no answer \(check the fake\)"):
         await link.start()
     await link.close()
@@ -147,12 +152,36 @@ async def test_a_blocked_event_loop_is_stopped_for_once_while_a_motion_is_armed(
         assert transport.log.count("stop") == 1
 
 
+async def test_a_stop_for_a_blocked_loop_that_fails_is_sent_over_the_next_connection() -> None:
+    async with linked() as (link, transport, listener):
+        transport.failing_stops = 1
+        link.arm("stop")
+        threading.Event().wait(0.6)
+        await until_heard(listener, "silence")
+        assert transport.log.count("stop") == 1
+        assert transport.opened == 2
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 async def test_a_defect_of_a_transport_is_a_lost_device_and_no_silence() -> None:
     async with linked() as (link, transport, listener):
         transport.defect = True
         await until_heard(listener, "lost: the driver failed: ZeroDivisionError")
         with pytest.raises(RobotError, match="the driver failed"):
+            link.fresh()
+        await link.close()
+        # A second driver of the device could not connect otherwise.
+        assert transport.closed == 1
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+async def test_a_reading_that_is_not_finite_is_no_reading(value: float) -> None:
+    async with linked() as (link, transport, listener):
+        transport.value = value
+        await until_heard(listener, "lost: invalid reading: the reading is ")
+        assert link.latest is not None
+        assert math.isfinite(link.latest.value)
+        with pytest.raises(RobotError, match="invalid reading"):
             link.fresh()
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.drivers.device_transport import LinkError
 from robots.drivers.emulation.byte_stream import ProtocolSession
 from robots.drivers.emulation.wire_faults import WireFaults
 from robots.drivers.robotiq.emulation.emulated_gripper import EmulatedGripper
 from robots.drivers.robotiq.emulation.gripper_sessions import RegisterBank, RtuSession, TcpSession, UrcapSession
+from robots.drivers.robotiq.emulation.kinematic_fingers import KinematicFingers
 from robots.drivers.robotiq.emulation.modbus_frames import with_crc, with_mbap
 from robots.drivers.robotiq.gripper_registers import (
     GripperCommand,
@@ -19,6 +19,7 @@ from robots.drivers.robotiq.gripper_registers import (
     encode_status,
 )
 from robots.drivers.robotiq.urcap_codec import STATUS_NAMES, decode_reply, status_of
+from robots.io.wire.link_error import LinkError
 from tests.tiers import examples
 
 MANY = settings(max_examples=examples(200, nightly=25_000))
@@ -42,7 +43,8 @@ class FrozenTime:
 
     def __init__(self, *, at_zero: bool) -> None:
         self.now_s = 0.0
-        self.gripper = EmulatedGripper(lambda: self.now_s, activation_s=1.0)
+        self.fingers = KinematicFingers(lambda: self.now_s)
+        self.gripper = EmulatedGripper(lambda: self.now_s, self.fingers, activation_s=1.0)
         self.bank = RegisterBank(self.gripper, unit=9, at_zero=at_zero, faults=WireFaults())
 
     def travel_after(self, session: ProtocolSession, chunks: list[bytes]) -> float:
@@ -51,7 +53,7 @@ class FrozenTime:
             session.feed(chunk)
             self.now_s += 60.0
         self.gripper.advance()
-        return self.gripper.travel
+        return self.fingers.travel
 
 
 @MANY

@@ -15,15 +15,17 @@ from engine.messages.device_state import DeviceState
 from engine.skills.devices import EnableDevice
 from engine.skills.gripper import GripperMove, GripperOpen, ReadGripper
 from robots.port import MotionEnd
-from tests.robots.drivers.emulated_gripper import CONNECTIONS, HAND, Emulators, driven, emulated
-from tests.robots.drivers.fault_cases import CASES, FaultCase
+from tests.robots.drivers.emulated_device import Emulators
+from tests.robots.drivers.emulated_gripper import CONNECTIONS, HAND, driven, emulated
+from tests.robots.drivers.fault_cases import FaultCase
+from tests.robots.drivers.faulty_gripper import CASES, FAULTY_GRIPPER
 from tests.robots.drivers.faulty_motion import faulty_motion
 
 
 @pytest.fixture(scope="module")
 def emulators() -> Generator[Emulators]:
     """The emulators of this file, each started at its first use."""
-    with Emulators() as started:
+    with Emulators(emulated) as started:
         yield started
 
 
@@ -32,7 +34,7 @@ def emulators() -> Generator[Emulators]:
 def test_a_fault_is_named_and_nothing_moves_until_a_person_permits_it(
     emulators: Emulators, case: FaultCase, connection: str
 ) -> None:
-    outcome = asyncio.run(faulty_motion(emulators.of(connection), case))
+    outcome = asyncio.run(faulty_motion(FAULTY_GRIPPER, emulators.of(connection), case))
     assert outcome.status is GoalStatus.ABORTED
     assert any(cause in outcome.cause for cause in case.cause), outcome.cause
     assert outcome.noticed_s < 20.0
@@ -117,6 +119,31 @@ def test_the_fingers_are_stopped_while_the_event_loop_is_blocked(emulators: Emul
             assert "the engine was silent for" in report.reason
             state = emulator.do("state")
             assert (state["go"], state["width_m"] > 0.03) == (False, True)
+
+    asyncio.run(scenario())
+
+
+def test_fingers_that_are_moved_on_after_that_stop_are_stopped_too(emulators: Emulators) -> None:
+    """A callback that waited while the event loop was blocked resumes the motion before it hears of the stop."""
+
+    async def scenario() -> None:
+        emulator = emulators.of("urcap")
+        emulator.do("object", width_m=None)
+        async with driven(emulator, enable=True) as (bus, device):
+            await bus.send_goal(GripperOpen(speed_m_s=0.15), to=HAND).result()
+            motion = device.port.close_to(width_m=0.0, speed_m_s=0.02, force_n=30.0)
+            while device.port.sample().width_m > 0.08:
+                await bus.clock.sleep(0.01)
+            await motion.hold()
+            resumed = asyncio.create_task(motion.resume())
+            threading.Event().wait(1.5)
+            report = await motion.report()
+            await resumed
+            assert "the engine was silent for" in report.reason
+            await device.report(readings=20)
+            state = emulator.do("state")
+            assert (state["go"], state["width_m"] > 0.03) == (False, True)
+            assert device.device_state().problem == ""
 
     asyncio.run(scenario())
 

@@ -9,6 +9,7 @@ import pytest
 from robots.drivers.emulation.wire_faults import WireFaults
 from robots.drivers.robotiq.emulation.emulated_gripper import EmulatedGripper
 from robots.drivers.robotiq.emulation.gripper_sessions import RegisterBank, RtuSession, TcpSession
+from robots.drivers.robotiq.emulation.kinematic_fingers import KinematicFingers
 from robots.drivers.robotiq.emulation.modbus_frames import crc16, with_crc, with_mbap
 from robots.drivers.robotiq.gripper_registers import (
     ACTIVATE,
@@ -21,6 +22,7 @@ from robots.drivers.robotiq.gripper_registers import (
 from robots.drivers.robotiq.modbus_transport import ModbusTransport
 from robots.drivers.robotiq.robotiq_options import RtuOverTcp
 from robots.drivers.robotiq.urcap_codec import decode_reply, encode_get, encode_set
+from robots.io.wire.wire_tap import WireTap
 from tests.robots.drivers.emulated_gripper import emulated
 
 LINES = (Path(__file__).parent / "robotiq_frames.txt").read_text(encoding="utf-8").splitlines()
@@ -37,7 +39,7 @@ COMMANDS = {
 
 
 def bank() -> RegisterBank:
-    gripper = EmulatedGripper(lambda: 0.0, activation_s=1.0)
+    gripper = EmulatedGripper(lambda: 0.0, KinematicFingers(lambda: 0.0), activation_s=1.0)
     return RegisterBank(gripper, unit=9, at_zero=False, faults=WireFaults())
 
 
@@ -69,11 +71,11 @@ def test_the_emulator_answers_each_frame_as_a_gripper_does() -> None:
 def test_pymodbus_sends_those_frames_over_a_socket_and_takes_the_answers() -> None:
     sent: list[bytes] = []
     received: list[bytes] = []
+    other: list[bytes] = []
     with emulated("rtu_over_tcp") as emulator:
         connection = RtuOverTcp(host=emulator.place["host"], port=emulator.place["port"])
-        transport = ModbusTransport(
-            connection, unit=9, timeout_s=2.0, trace=lambda out, packet: (sent if out else received).append(packet)
-        )
+        tap = WireTap(lambda event: {"sent": sent, "received": received}.get(event.kind, other).append(event.data))
+        transport = ModbusTransport(connection, unit=9, timeout_s=2.0, tap=tap)
         transport.open()
         for name in ("reset", "activate", "read", "close", "open"):
             if name == "read":
@@ -96,7 +98,7 @@ def test_a_frame_may_arrive_in_pieces(pieces: int) -> None:
 def test_a_pause_ends_a_frame_of_which_a_part_was_lost() -> None:
     """The part that arrived announces a long frame, which would swallow the requests after it."""
     now_s = 0.0
-    gripper = EmulatedGripper(lambda: now_s, activation_s=1.0)
+    gripper = EmulatedGripper(lambda: now_s, KinematicFingers(lambda: now_s), activation_s=1.0)
     session = RtuSession(RegisterBank(gripper, unit=9, at_zero=False, faults=WireFaults()))
     assert session.feed(bytes.fromhex("09 10 03 E8 00 03 FF")) == b""
     now_s = 0.2
@@ -115,7 +117,7 @@ def test_another_unit_a_wrong_checksum_and_a_wrong_address_are_not_obeyed() -> N
 
 
 def test_modbus_tcp_has_its_registers_at_zero_and_returns_the_transaction() -> None:
-    gripper = EmulatedGripper(lambda: 0.0, activation_s=1.0)
+    gripper = EmulatedGripper(lambda: 0.0, KinematicFingers(lambda: 0.0), activation_s=1.0)
     session = TcpSession(RegisterBank(gripper, unit=9, at_zero=True, faults=WireFaults()))
     reply = session.feed(with_mbap(0x1234, bytes.fromhex("09 10 00 00 00 03 06 01 00 00 00 00 00")))
     assert reply == bytes.fromhex("12 34 00 00 00 06 09 10 00 00 00 03")

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.robots.drivers.emulated_gripper import EmulatedProcess, emulated
+from tests.robots.drivers.emulated_device import EmulatedProcess
+from tests.robots.drivers.emulated_gripper import emulated
 
 WITNESSES = "FLEXCELL_WITNESSES"
 """Folder with the foreign client: `pip install --no-deps --target FOLDER pyrobotiqgripper==3.3.14`."""

@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from robots.control.commanding.arm_commands import FollowTrajectory, TrackForce
 from robots.io.message_codec import encode_payload, payload_decoder
 from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
-from robots.sim.commands.arm_commands import FollowTrajectory, TrackForce
 
 TRAJECTORY = JointTrajectory(
     dt_s=0.01, position_rad=np.arange(6.0).reshape(3, 2), velocity_rad_s=np.zeros((3, 2), order="F")

@@ -1,10 +1,17 @@
-"""The emulated gripper: fingers that take time, stop at objects, and refuse while there is a fault."""
+"""The emulated gripper: registers, activation and faults over fingers, which are its own or those of a world."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
 
+from robots.drivers.emulation.plant import ToolPlant
+from robots.drivers.robotiq.emulation.kinematic_fingers import (
+    CLOSED,
+    OPEN,
+    count_of_share,
+    width_of_share,
+)
 from robots.drivers.robotiq.gripper_registers import (
     RESET,
     ActivationStatus,
@@ -12,11 +19,8 @@ from robots.drivers.robotiq.gripper_registers import (
     GripperStatus,
     ObjectStatus,
 )
-from robots.drivers.robotiq.gripper_units import WidthTable, count_of_width, speed_of_count, width_of_count
+from robots.drivers.robotiq.gripper_units import MAX_FORCE_N, MAX_SPEED_M_S, force_of_count, speed_of_count
 
-WIDTHS: WidthTable = ((3, 0.085), (230, 0.0))
-_OPEN, _CLOSED = WIDTHS[0][0], WIDTHS[-1][0]
-_COUNTS_M = (_CLOSED - _OPEN) / WIDTHS[0][1]
 _RESET_FAULT = 0xA
 _NOT_ACTIVATED, _DELAYED = 0x7, 0x5
 _MOVING_A, _PRESSING_A = 0.15, 0.5
@@ -26,43 +30,37 @@ class EmulatedGripper:
     """Registers with time behind them; `now_s` is its clock.
 
     Attributes:
-        object_m: Width of what is between the fingers, None for nothing.
-        ring_m: Inner width of what is around the fingers, None for nothing.
         fault: Its fault code; while there is one, nothing moves.
-        travel: Counts that the fingers have passed since it was switched on.
         stopped_s: When the last command to stop arrived, on its clock.
-        rested_s: When the fingers last came to rest.
         commands: Number of commands received.
     """
 
-    def __init__(self, now_s: Callable[[], float], *, activation_s: float) -> None:
+    def __init__(self, now_s: Callable[[], float], fingers: ToolPlant, *, activation_s: float) -> None:
         self.now_s = now_s
+        self._fingers = fingers
         self._activation_s = activation_s
-        self.object_m: float | None = None
-        self.ring_m: float | None = None
         self.fault = 0
-        self.travel = 0.0
         self.commands = 0
-        self.stopped_s = self.rested_s = 0.0
+        self.stopped_s = 0.0
         self._command = RESET
         self._activation = ActivationStatus.RESET
         self._active_at_s = 0.0
         self._contact = ObjectStatus.MOVING
-        self._position = float(_CLOSED // 2)
-        self._time_s = now_s()
+        self._closing = False
+        self._driving = False
 
     @property
     def width_m(self) -> float:
         """The opening now."""
         self.advance()
-        return width_of_count(round(self._position), WIDTHS)
+        return width_of_share(self._fingers.measured().closed_share)
 
     def restart(self) -> None:
         """Switch off and on: nothing is activated, and the fingers are where they were."""
         self.advance()
         self._command, self._activation, self.fault = RESET, ActivationStatus.RESET, 0
-        self._contact = ObjectStatus.MOVING
-        self.travel = 0.0
+        self._contact, self._driving = ObjectStatus.MOVING, False
+        self._fingers.stop()
 
     def command(self, command: GripperCommand) -> None:
         """Take the command registers."""
@@ -73,18 +71,21 @@ class EmulatedGripper:
             self._activation = ActivationStatus.RESET
             self.fault = 0 if self.fault >= _RESET_FAULT else self.fault
             command = replace(command, go=False)
+            self._fingers.stop()
         elif self._activation is ActivationStatus.RESET:
             self._activation, self._active_at_s = ActivationStatus.ACTIVATING, now_s + self._activation_s
+            self._fingers.home()
         if self._command.go and not command.go:
             self.stopped_s = now_s
         if command.go:
-            self._contact = ObjectStatus.MOVING
+            self._contact, self._driving = ObjectStatus.MOVING, False
         self._command = command
+        self.advance()
 
     def status(self) -> GripperStatus:
         """Return the status registers."""
         self.advance()
-        command, moving = self._command, self._moving()
+        command, moving = self._command, self._may_move()
         fault = self.fault
         if not fault and command.go and not command.activate:
             fault = _NOT_ACTIVATED
@@ -98,44 +99,43 @@ class EmulatedGripper:
             contact=self._contact,
             fault=fault,
             position_echo=command.position,
-            position=round(self._position),
+            position=count_of_share(self._fingers.measured().closed_share),
             current_a=_MOVING_A if moving else _PRESSING_A if touching and command.go else 0.0,
         )
 
     def advance(self) -> None:
-        """Move the fingers up to now."""
-        now_s = self.now_s()
-        elapsed_s, self._time_s = now_s - self._time_s, now_s
-        if self._activation is ActivationStatus.ACTIVATING and now_s >= self._active_at_s:
-            # It closes and opens once.
-            self._activation = ActivationStatus.ACTIVE
-            self.travel += _CLOSED - _OPEN
-            self._position = float(_OPEN)
-            self._contact = ObjectStatus.AT_POSITION
-        if not self._moving():
+        """Drive the fingers, or stop them, and see how far they are now."""
+        fingers = self._fingers
+        reading = fingers.measured()
+        if self._activation is ActivationStatus.ACTIVATING:
+            if self.now_s() >= self._active_at_s and not reading.moving:
+                self._activation, self._contact = ActivationStatus.ACTIVE, ObjectStatus.AT_POSITION
             return
-        step = speed_of_count(self._command.speed) * _COUNTS_M * elapsed_s
-        end, contact = self._end()
-        distance = end - self._position
-        travelled = min(abs(distance), step)
-        self.travel += travelled
-        self._position += travelled if distance > 0 else -travelled
-        if travelled == abs(distance):
-            self._contact, self.rested_s = contact, now_s
+        if self._may_move() != self._driving:
+            self._driving = not self._driving
+            self._drive() if self._driving else fingers.stop()
+            reading = fingers.measured()
+        if self._driving and not reading.moving:
+            self._driving, self._contact = False, self._end(blocked=reading.blocked)
+        elif self._contact in (ObjectStatus.CONTACT_OPENING, ObjectStatus.CONTACT_CLOSING) and self._command.go:
+            # What it held is gone: the standing command has moved the fingers on.
+            self._contact = self._end(blocked=reading.blocked)
 
-    def _moving(self) -> bool:
+    def _may_move(self) -> bool:
         active = self._activation is ActivationStatus.ACTIVE
         return active and self._command.go and not self.fault and self._contact is ObjectStatus.MOVING
 
-    def _end(self) -> tuple[float, ObjectStatus]:
-        """Return where the fingers stop, and what they say there."""
-        goal = float(min(_CLOSED, max(_OPEN, self._command.position)))
-        if goal >= self._position and self.object_m is not None:
-            touch = count_of_width(self.object_m, WIDTHS)
-            if self._position <= touch < goal:
-                return float(touch), ObjectStatus.CONTACT_CLOSING
-        if goal <= self._position and self.ring_m is not None:
-            touch = count_of_width(self.ring_m, WIDTHS)
-            if goal < touch <= self._position:
-                return float(touch), ObjectStatus.CONTACT_OPENING
-        return goal, ObjectStatus.AT_POSITION
+    def _drive(self) -> None:
+        command = self._command
+        goal = min(CLOSED, max(OPEN, command.position))
+        self._closing = goal >= count_of_share(self._fingers.measured().closed_share)
+        self._fingers.close_to(
+            (goal - OPEN) / (CLOSED - OPEN),
+            speed_share=speed_of_count(command.speed) / MAX_SPEED_M_S,
+            force_share=force_of_count(command.force) / MAX_FORCE_N,
+        )
+
+    def _end(self, *, blocked: bool) -> ObjectStatus:
+        if not blocked:
+            return ObjectStatus.AT_POSITION
+        return ObjectStatus.CONTACT_CLOSING if self._closing else ObjectStatus.CONTACT_OPENING

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
-import time
 from collections.abc import Mapping
 
 from engine.cell.drivers import Ready
 from robots.drivers.emulation.byte_stream import ProtocolSession, PtyStream, TcpStream
-from robots.drivers.emulation.side_channel import Request, SideChannel
+from robots.drivers.emulation.plant import ALONE, Plant
+from robots.drivers.emulation.serve_emulator import execute_wire_fault, number, serve_emulator
+from robots.drivers.emulation.side_channel import Request
 from robots.drivers.emulation.wire_faults import WireFaults
 from robots.drivers.robotiq.emulation.emulated_gripper import EmulatedGripper
 from robots.drivers.robotiq.emulation.gripper_sessions import RegisterBank, RtuSession, TcpSession, UrcapSession
+from robots.drivers.robotiq.emulation.kinematic_fingers import KinematicFingers
 from robots.drivers.robotiq.emulation.robotiq_emulator import RobotiqEmulatorOptions
 from robots.drivers.robotiq.gripper_registers import ACTIVATE, GripperCommand
 
@@ -19,81 +20,75 @@ from robots.drivers.robotiq.gripper_registers import ACTIVATE, GripperCommand
 class GripperFaults:
     """Executes the requests of the side channel: `do` names what, further keys its values.
 
-    cut, freeze, garbage, refuse: as `WireFaults`. slow: `seconds`. object, ring: `width_m`, null for nothing.
-    fault: `code`, 0 for none. restart: power off and on. foreign: another client moves to `position`, with `go`.
-    restore: no fault of the wire. state: the true state.
+    Faults of the wire as `execute_wire_fault`. object, ring: `width_m`, null for nothing; `fingers` are None where a
+    world has the fingers, and what is between them. fault: `code`, 0 for none. restart: power off and on. foreign:
+    another client moves to `position`, with `go`. state: the true state.
     """
 
-    def __init__(self, bank: RegisterBank, stream: TcpStream | PtyStream, faults: WireFaults) -> None:
+    def __init__(
+        self, bank: RegisterBank, fingers: KinematicFingers | None, stream: TcpStream | PtyStream, faults: WireFaults
+    ) -> None:
         self._bank = bank
+        self._fingers = fingers
         self._stream = stream
         self._faults = faults
 
     async def execute(self, request: Request) -> Mapping[str, object]:
         """Execute one request; raises KeyError, TypeError or ValueError for what is not one."""
-        gripper, faults = self._bank.gripper, self._faults
+        gripper = self._bank.gripper
         gripper.advance()
         match str(request["do"]):
-            case "cut":
-                faults.cut = True
-                await self._stream.close()
-            case "freeze":
-                faults.frozen = True
-            case "garbage":
-                faults.garbage = True
-            case "refuse":
-                faults.refuse = True
-            case "slow":
-                faults.slow_s = _number(request["seconds"])
-            case "restore":
-                was_cut = faults.cut
-                faults.cut = faults.frozen = faults.garbage = faults.refuse = False
-                faults.slow_s = 0.0
-                if was_cut:
-                    await self._stream.open()
             case "object":
-                gripper.object_m = _width(request["width_m"])
+                self._own_fingers().object_m = _width(request["width_m"])
             case "ring":
-                gripper.ring_m = _width(request["width_m"])
+                self._own_fingers().ring_m = _width(request["width_m"])
             case "fault":
-                gripper.fault = int(_number(request["code"]))
+                gripper.fault = int(number(request["code"]))
             case "restart":
                 gripper.restart()
                 await self._stream.close()
                 await self._stream.open()
             case "foreign":
-                position, go = int(_number(request["position"])), bool(request.get("go", True))
+                position, go = int(number(request["position"])), bool(request.get("go", True))
                 self._bank.take(GripperCommand(activate=True, go=go, position=position, speed=255, force=0))
             case "state":
                 return self._state()
-            case other:
-                raise ValueError(f"{other} is not known")
+            case _:
+                await execute_wire_fault(request, self._faults, self._stream)
         return {"ok": True}
 
+    def _own_fingers(self) -> KinematicFingers:
+        if self._fingers is None:
+            raise ValueError("its fingers are in a world: put a part between them there")
+        return self._fingers
+
     def _state(self) -> Mapping[str, object]:
-        gripper = self._bank.gripper
+        gripper, fingers = self._bank.gripper, self._fingers
         status = gripper.status()
         return {
-            "time_s": time.monotonic(),
+            "time_s": gripper.now_s(),
             "width_m": gripper.width_m,
             "position": status.position,
             "active": status.active,
             "go": status.go,
             "contact": status.contact.name,
             "fault": status.fault,
-            "travel": gripper.travel,
+            **({"travel": fingers.travel, "rested_s": fingers.rested_s} if fingers is not None else {}),
             "commands": gripper.commands,
             "stopped_s": gripper.stopped_s,
-            "rested_s": gripper.rested_s,
             "clients": self._stream.clients,
         }
 
 
-async def serve_gripper(options: RobotiqEmulatorOptions, ready: Ready) -> None:
-    """Serve until this is cancelled; `ready` receives where."""
+async def serve_gripper(options: RobotiqEmulatorOptions, ready: Ready, plant: Plant = ALONE) -> None:
+    """Serve until this is cancelled; `ready` receives where. The fingers are those of the plant, if it has some."""
     faults = WireFaults()
-    gripper = EmulatedGripper(time.monotonic, activation_s=0.0 if options.active else options.activation_s)
-    gripper.object_m = options.object_m if options.object_m >= 0.0 else None
+    own = KinematicFingers(plant.clock.now_s)
+    fingers = own if plant.tool is None else None
+    activation_s = 0.0 if options.active else options.activation_s
+    gripper = EmulatedGripper(plant.clock.now_s, plant.tool or own, activation_s=activation_s)
+    if fingers is not None:
+        fingers.object_m = options.object_m if options.object_m >= 0.0 else None
     bank = RegisterBank(gripper, unit=options.unit, at_zero=options.connection == "modbus_tcp", faults=faults)
 
     def new_session() -> ProtocolSession:
@@ -108,27 +103,19 @@ async def serve_gripper(options: RobotiqEmulatorOptions, ready: Ready) -> None:
     if options.active:
         bank.take(ACTIVATE)
         gripper.advance()
-        gripper.travel, gripper.commands = 0.0, 0
+        gripper.commands = 0
+        if fingers is not None:
+            fingers.travel = 0.0
     stream = (
         PtyStream(new_session, faults)
         if options.connection == "serial"
         else TcpStream(new_session, faults, host=options.host, port=options.port)
     )
-    side = SideChannel(GripperFaults(bank, stream, faults).execute, host=options.host, port=options.side_port)
-    place = await stream.open()
-    ready({"connection": options.connection, **place, "side_port": await side.open()})
-    try:
-        await asyncio.Event().wait()
-    finally:
-        side.close()
-        await stream.close()
-
-
-def _number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{value!r} is no number")
-    return float(value)
+    execute = GripperFaults(bank, fingers, stream, faults).execute
+    await serve_emulator(
+        stream, execute, ready, connection=options.connection, host=options.host, side_port=options.side_port
+    )
 
 
 def _width(value: object) -> float | None:
-    return None if value is None else _number(value)
+    return None if value is None else number(value)

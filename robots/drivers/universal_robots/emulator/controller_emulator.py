@@ -8,6 +8,7 @@ from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 
+from robots.drivers.emulation.plant import ALONE, Plant
 from robots.drivers.universal_robots.emulator.controller_side_channel import ControllerSideChannel
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
 from robots.drivers.universal_robots.emulator.dashboard import BANNER, DashboardCommands
@@ -37,9 +38,11 @@ class EmulatorPorts:
 class ControllerEmulator:
     """One controller on one address."""
 
-    def __init__(self, *, model: str, series: str) -> None:
+    def __init__(self, *, model: str, series: str, plant: Plant = ALONE, tool_kg: float = 0.0) -> None:
         self._series = SERIES[series]
-        self.controller = ControllerState(EmulatedArm(ARMS[model], cycle_s=1.0 / self._series.cycle_hz))
+        arm = EmulatedArm(ARMS[model], cycle_s=1.0 / self._series.cycle_hz, plant=plant.arm)
+        self.controller = ControllerState(arm, tool_kg=tool_kg, on_output=plant.on_output)
+        self._clock = plant.clock
         self._faults = LinkFaults()
         self._rtde = RtdeServer(self.controller, self._series, self._faults)
         self._side_channel = ControllerSideChannel(self.controller, self._faults)
@@ -66,18 +69,18 @@ class ControllerEmulator:
                 server.close()
 
     async def run(self) -> None:
-        """Execute cycles in real time until cancelled."""
-        loop = asyncio.get_running_loop()
+        """Execute cycles in the time of the plant, which is real time without a world, until cancelled."""
+        clock = self._clock
         cycle_s = self.controller.arm.cycle_s
-        due_s = loop.time()
+        due_s = clock.now_s()
         cycle = 0
         while True:
             await self._faults.alive()
             due_s += cycle_s
             # Also when it is late it serves the sockets in each cycle: a watchdog counts what comes in.
-            await asyncio.sleep(max(0.0, due_s - loop.time()))
-            if loop.time() - due_s > _MOST_LATE_CYCLES * cycle_s:
-                due_s = loop.time()
+            await clock.sleep_until(due_s)
+            if clock.now_s() - due_s > _MOST_LATE_CYCLES * cycle_s:
+                due_s = clock.now_s()
             if self._faults.is_frozen:
                 continue
             cycle += 1

@@ -23,7 +23,7 @@ class EmulatorRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     do: Literal[
         "state", "wait", "protective_stop", "emergency_stop", "release_emergency_stop", "digital_input", "contact",
-        "force", "remote", "freeze", "drop", "cut", "slow", "restore",
+        "force", "remote", "freeze", "drop", "cut", "slow", "garbage", "restore",
     ]  # fmt: skip
     until: Literal["", "moving", "at_rest", "playing", "stopped", "unlockable"] = ""
     bit: int = 0
@@ -112,6 +112,8 @@ class ControllerSideChannel:
                 self._faults.cut(stay=request.do == "cut")
             case "slow":
                 self._faults.delay_s = max(0.0, request.value)
+            case "garbage":
+                self._faults.garbles = True
             case _:
                 self._faults.restore()
 
@@ -120,9 +122,9 @@ class ControllerSideChannel:
         controller = self._controller
         return {
             "time_s": controller.time_s,
-            "q": controller.arm.q.tolist(),
-            "qd": controller.arm.qd.tolist(),
-            "tcp_pose": controller.arm.tcp_pose(),
+            "q": controller.arm.measured_q.tolist(),
+            "qd": controller.arm.measured_qd.tolist(),
+            "tcp_pose": controller.arm.measured_tcp_pose(),
             "tcp_offset": controller.arm.tcp_offset,
             "robot_mode": controller.safety.robot_mode.name,
             "safety_mode": controller.safety.safety_mode.name,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
 
+from robots.drivers.emulation.plant import OutputListener, unconnected
 from robots.drivers.universal_robots.emulator.controller_safety import ControllerSafety
 from robots.drivers.universal_robots.emulator.emulated_arm import (
     PROGRAM_STOP_RAD_S2,
@@ -17,6 +18,8 @@ from robots.drivers.universal_robots.emulator.emulated_arm import (
 
 REGISTERS = 48
 _INT32 = 1 << 31
+# Standard outputs, then those of the tool: numbered as drivers do.
+_WIRED_BITS = (*range(8), 16, 17)
 _MOST_SECONDARY = 10
 
 
@@ -54,10 +57,15 @@ class RtdeWatchdog:
 
 
 class ControllerState:
-    """One controller with one arm. Only the task of the cycle and the sessions of clients, on one loop, change it."""
+    """One controller with one arm. Only the task of the cycle and the sessions of clients, on one loop, change it.
 
-    def __init__(self, arm: EmulatedArm) -> None:
+    `tool_kg` is the part of the payload that belongs to the plant.
+    """
+
+    def __init__(self, arm: EmulatedArm, *, tool_kg: float = 0.0, on_output: OutputListener = unconnected) -> None:
         self.arm = arm
+        self._tool_kg = tool_kg
+        self._on_output = on_output
         self.safety = ControllerSafety()
         self.time_s = 0.0
         self.program: UrProgram | None = None
@@ -106,7 +114,11 @@ class ControllerState:
     def set_digital_outputs(self, mask: int, bits: int) -> None:
         """Change the outputs of the mask: bits 0 to 7 standard, 8 to 15 configurable, 16 and 17 tool."""
         mask &= 0x3FFFF
-        self.digital_outputs = self.digital_outputs & ~mask | bits & mask
+        before, self.digital_outputs = self.digital_outputs, self.digital_outputs & ~mask | bits & mask
+        changed = before ^ self.digital_outputs
+        for output, bit in enumerate(_WIRED_BITS):
+            if changed >> bit & 1:
+                self._on_output(output, on=bool(self.digital_outputs >> bit & 1))
 
     def set_speed_fraction(self, fraction: float) -> None:
         """Move the speed slider."""
@@ -130,6 +142,7 @@ class ControllerState:
             self.messages.append(f"program {program.name} refused: the robot cannot move")
             return False
         self.stop_program()
+        self.arm.settle()
         self.program, self.program_name = program, program.name
         return True
 
@@ -166,7 +179,10 @@ class ControllerState:
         if program is not None and not self.is_paused and not self._step(program) and self.program is program:
             self.stop_program()
         self._secondary = [secondary for secondary in self._secondary if self._step(secondary)]
+        self.arm.plant.carry(max(0.0, self.payload_kg - self._tool_kg))
         self.arm.finish_cycle(PROGRAM_STOP_RAD_S2 if self.safety.can_move else SAFETY_STOP_RAD_S2)
+        if self.arm.plant.problem and self.safety.can_move:
+            self.protective_stop(self.arm.plant.problem)
 
     def _step(self, program: UrProgram) -> bool:
         """Execute a cycle of a program; returns whether it goes on."""

@@ -1,4 +1,4 @@
-"""The joints of an emulated arm: one set point a cycle, the limits of the joints, and rest where none is commanded."""
+"""The set points of an emulated arm: one a cycle, the limits of the joints, and rest where none is commanded."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from robots.drivers.emulation.kinematic_joints import KinematicJoints
+from robots.drivers.emulation.plant import ArmPlant
 from robots.drivers.universal_robots.emulator.pose_vectors import inverse_of, matrix_of, pose_of
 from robots.drivers.universal_robots.emulator.ur_kinematics import UrKinematics
 from robots.drivers.universal_robots.emulator.ur_models import JOINT_RANGE_RAD, ArmGeometry
@@ -23,13 +25,15 @@ class ArmLimitError(Exception):
 
 
 class EmulatedArm:
-    """Positions are followed exactly: measured and commanded values are the same."""
+    """`q`, `qd` and `qdd` are set points, `measured_q` and `measured_qd` what the plant makes of them."""
 
-    def __init__(self, geometry: ArmGeometry, *, cycle_s: float) -> None:
+    def __init__(self, geometry: ArmGeometry, *, cycle_s: float, plant: ArmPlant | None = None) -> None:
         self.kinematics = UrKinematics(geometry)
         self.joint_speed_rad_s = np.array(geometry.joint_speed_rad_s)
         self.cycle_s = cycle_s
-        self.q: Array = np.array(START_RAD)
+        self.plant: ArmPlant = plant or KinematicJoints(np.array(START_RAD))
+        self.measured_q, self.measured_qd = self.plant.measured()
+        self.q: Array = self.measured_q.copy()
         self.qd: Array = np.zeros(6)
         self.qdd: Array = np.zeros(6)
         self.tcp_offset: list[float] = [0.0] * 6
@@ -71,6 +75,19 @@ class EmulatedArm:
             self._tcp_speed = [float(value) for value in speed]
         return self._tcp_speed
 
+    def measured_tcp_pose(self) -> list[float]:
+        """Return the tool centre point at the measured joints."""
+        if self.measured_q is self.q:
+            return self.tcp_pose()
+        return pose_of(self.kinematics.flange(self.measured_q) @ self.tool)
+
+    def settle(self) -> None:
+        """Take the measured joints as the set point, at rest, where the plant has not followed it."""
+        if self.plant.problem:
+            self.plant.reset()
+            self.q, self.qd = self.plant.measured()[0].copy(), np.zeros(6)
+            self._tcp_pose = self._tcp_speed = None
+
     def joints_for(
         self, tcp: Array, near: Sequence[float] | Array | None = None, tool: Array | None = None
     ) -> Array | None:
@@ -96,6 +113,7 @@ class EmulatedArm:
         if self._next is None:
             if self.is_at_rest:
                 self.qdd = np.zeros(6)
+                self._measure()
                 return
             self._next = self.q + self.braked(deceleration_rad_s2) * self.cycle_s
         qd = (self._next - self.q) / self.cycle_s
@@ -103,6 +121,11 @@ class EmulatedArm:
         self.qdd = (qd - self.qd) / self.cycle_s
         self.q, self.qd, self._next = self._next, qd, None
         self._tcp_pose = self._tcp_speed = None
+        self._measure()
+
+    def _measure(self) -> None:
+        self.plant.follow(self.q, self.qd)
+        self.measured_q, self.measured_qd = self.plant.measured()
 
     def braked(self, deceleration: float, speed: float | None = None) -> Array:
         """Return the joint velocities one cycle of braking later; `speed` is what the deceleration refers to."""

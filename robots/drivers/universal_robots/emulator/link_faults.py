@@ -3,17 +3,34 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 
 
 class LinkFaults:
     """Faults that the side channel switches, for all ports but its own."""
 
     def __init__(self) -> None:
-        self.delay_s = 0.0
+        self._delay_s = 0.0
+        self._quick = asyncio.Event()
+        self.garbles = False
+        """Whether RTDE sends bytes that are no packets."""
         self._is_cut = False
         self._alive = asyncio.Event()
         self._alive.set()
         self._transports: set[asyncio.Transport] = set()
+
+    @property
+    def delay_s(self) -> float:
+        """How late answers are."""
+        return self._delay_s
+
+    @delay_s.setter
+    def delay_s(self, delay_s: float) -> None:
+        self._delay_s = delay_s
+        if delay_s > 0.0:
+            self._quick.clear()
+        else:
+            self._quick.set()
 
     @property
     def is_frozen(self) -> bool:
@@ -53,10 +70,16 @@ class LinkFaults:
 
     def restore(self) -> None:
         """End all faults."""
-        self._is_cut, self.delay_s = False, 0.0
+        self._is_cut, self.delay_s, self.garbles = False, 0.0, False
         self._alive.set()
         for transport in self._transports:
             transport.resume_reading()
+
+    async def delayed(self) -> None:
+        """Return as late as answers are, or as soon as the link is quick again."""
+        if self._delay_s > 0.0:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._quick.wait(), self._delay_s)
 
     async def alive(self) -> None:
         """Wait until the controller does not hang."""

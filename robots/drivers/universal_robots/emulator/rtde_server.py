@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
 from robots.drivers.universal_robots.emulator.link_faults import LinkFaults
@@ -26,7 +25,10 @@ from robots.drivers.universal_robots.rtde_codec import (
 )
 
 _MOST_RECIPES = 255
+_LOWEST_HZ = 1.0
 _MOST_UNSENT_BYTES = 1_000_000
+# The loop executes calls of the same time in any order.
+_LATE_STEP_S = 1e-6
 
 
 class RtdeServer:
@@ -59,6 +61,8 @@ class RtdeSession(asyncio.Protocol):
         self._inputs: dict[int, tuple[RecipeCodec, list[str]]] = {}
         self._outputs: tuple[RecipeCodec, list[OutputReader]] | None = None
         self._every_cycles = 1
+        self._late = 0
+        self._late_until_s = 0.0
         self._is_started = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -103,10 +107,22 @@ class RtdeSession(asyncio.Protocol):
         transport = self._transport
         if transport is None or transport.is_closing():
             return
-        if self._server.faults.delay_s > 0.0:
-            asyncio.get_running_loop().call_later(self._server.faults.delay_s, transport.write, packet.encode())
-        else:
-            transport.write(packet.encode())
+        faults, sent = self._server.faults, packet.encode()
+        if faults.garbles:
+            sent = bytes(len(sent))
+        if faults.delay_s <= 0.0 and not self._late:
+            transport.write(sent)
+            return
+        # In order, also where the link is slow no more.
+        loop = asyncio.get_running_loop()
+        self._late_until_s = max(self._late_until_s + _LATE_STEP_S, loop.time() + faults.delay_s)
+        self._late += 1
+        loop.call_at(self._late_until_s, self._send_late, transport, sent)
+
+    def _send_late(self, transport: asyncio.Transport, sent: bytes) -> None:
+        self._late -= 1
+        if not transport.is_closing():
+            transport.write(sent)
 
     def _refuse(self, reason: str) -> None:
         self._server.controller.messages.append(f"RTDE: {reason}")
@@ -144,7 +160,7 @@ class RtdeSession(asyncio.Protocol):
         frequency_hz, rest = read_frequency(payload)
         names = read_names(rest)
         cycle_hz = self._server.series.cycle_hz
-        is_valid = math.isfinite(frequency_hz) and 0.0 < frequency_hz <= cycle_hz and bool(names)
+        is_valid = _LOWEST_HZ <= frequency_hz <= cycle_hz and bool(names)
         variables = [output_variable(name) for name in names]
         types = [NOT_FOUND if variable is None else variable[0] for variable in variables]
         if not is_valid or NOT_FOUND in types:

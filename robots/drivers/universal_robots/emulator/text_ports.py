@@ -23,8 +23,7 @@ def dashboard_port(answer: LineAnswer, faults: LinkFaults, *, banner: str) -> St
         while line := await reader.readline():
             await faults.alive()
             command = line.decode("utf-8", "replace").strip()
-            if faults.delay_s > 0.0:
-                await asyncio.sleep(faults.delay_s)
+            await faults.delayed()
             writer.write(f"{answer(command)}\n".encode())
             if command == "quit":
                 return

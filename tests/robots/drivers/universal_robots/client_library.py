@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
@@ -62,9 +63,14 @@ class ClientLibrary:
             raise LibraryError(answer["error"])
         return answer["result"]
 
-    def until(self, call: str) -> None:
-        """Repeat a call until its result is true; what the library knows is a cycle late."""
-        assert any(self.call(call) for _ in range(100_000))
+    def until(self, call: str, *arguments: object) -> None:
+        """Repeat a call until its result is true."""
+        self.until_that(call, bool, *arguments)
+
+    def until_that(self, call: str, is_so: Callable[[Any], bool], *arguments: object) -> None:
+        """Repeat a call until its result is so; what the library knows is late, and more so on a loaded machine."""
+        results = (self.call(call, *arguments) for _ in range(100_000))
+        assert any(is_so(result) for result in results), f"{call} stays {self.call(call, *arguments)}"
 
     def call(self, call: str, *arguments: object) -> Any:
         """Return the result of a call; raises LibraryError."""

@@ -59,6 +59,11 @@ class EmulatedController:
         assert self._process.stdout is not None
         self._process.stdout.close()
 
+    def restart(self) -> None:
+        """Switch the controller off and on: it forgets everything."""
+        self.__exit__(None, None, None)
+        self.__enter__()
+
     def ask(self, do: str, **fields: object) -> Mapping[str, Any]:
         """Send a request to the side channel and return its answer."""
         self._channel.sendall(json.dumps({"do": do, **fields}).encode() + b"\n")

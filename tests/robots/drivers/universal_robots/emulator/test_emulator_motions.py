@@ -41,7 +41,7 @@ def test_a_joint_motion_ends_at_its_target_at_rest(controller: EmulatedControlle
     move_to(client, HOME)
     assert controller.state()["q"] == pytest.approx(HOME, abs=1e-9)
     assert controller.state()["qd"] == [0.0] * 6
-    assert client.call("receive.getActualQ") == pytest.approx(HOME, abs=1e-9)
+    client.until_that("receive.getActualQ", lambda q: q == pytest.approx(HOME, abs=1e-9))
 
 
 def test_a_linear_motion_ends_at_its_pose(controller: EmulatedController, client: ClientLibrary) -> None:
@@ -59,12 +59,11 @@ def test_an_asynchronous_motion_reports_progress_and_is_stopped(
     """It is under way while the call has returned, and `stopJ` brings it to rest on its path."""
     move_to(client, HOME)
     assert client.call("control.moveJ", [1.5, *HOME[1:]], 0.5, 2.0, True) is True
-    controller.wait("moving")
-    assert client.call("control.getAsyncOperationProgress") >= 0
+    client.until_that("control.getAsyncOperationProgress", lambda progress: progress >= 0)
     client.call("control.stopJ", 4.0)
     state = controller.wait("at_rest")
     assert 0.0 < state["q"][0] < 1.4
-    assert client.call("control.getAsyncOperationProgress") < 0
+    client.until_that("control.getAsyncOperationProgress", lambda progress: progress < 0)
 
 
 def test_streamed_set_points_are_reached(controller: EmulatedController, client: ClientLibrary) -> None:
@@ -149,8 +148,8 @@ def test_outputs_inputs_and_the_speed_slider(controller: EmulatedController, cli
         move_to(client, TURNED)
         slow_s = controller.state()["time_s"] - begin_s
         state = controller.state()
-        assert outputs.call("receive.getActualDigitalOutputBits") == 1 << 3 | 1 << 17 | 1 << 8
-        assert outputs.call("receive.getDigitalInState", 5) is True
+        outputs.until_that("receive.getActualDigitalOutputBits", lambda bits: bits == 1 << 3 | 1 << 17 | 1 << 8)
+        outputs.until("receive.getDigitalInState", 5)
         outputs.call("io.setSpeedSlider", 1.0)
         outputs.call("io.setStandardDigitalOut", 3, False)
     assert state["speed_fraction"] == 0.5

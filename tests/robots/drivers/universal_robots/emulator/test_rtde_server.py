@@ -73,6 +73,46 @@ def test_an_input_has_one_owner_until_it_disconnects() -> None:
     assert answers(second, second_wire, packet("I", names)) == [packet("I", b"\x01INT32,DOUBLE")]
 
 
+async def due(delay_s: float) -> None:
+    """Let the loop make all calls that are due by then."""
+    passed = asyncio.Event()
+    asyncio.get_running_loop().call_later(delay_s, passed.set)
+    await passed.wait()
+
+
+async def test_a_slow_link_keeps_the_order_of_packets_and_drops_those_of_a_client_that_has_gone() -> None:
+    """As TCP does, also when it is slow no more."""
+    server = new_server()
+    session, wire = new_session(server)
+    server.faults.delay_s = 0.05
+    session.data_received(packet("V", b"\x00\x02").encode())
+    server.faults.delay_s = 0.0
+    session.data_received(packet("v").encode())
+    await due(0.2)
+    assert [each.kind for each in split_packets(bytearray(wire.sent))] == [ord("V"), ord("v")]
+    server.faults.delay_s = 0.01
+    wire.sent.clear()
+    session.data_received(packet("v").encode())
+    wire.close()
+    await due(0.1)
+    assert not wire.sent
+
+
+def test_a_frequency_that_no_controller_has_is_refused() -> None:
+    """The smallest double, which the control frequency divided by it is no number any more, and what is none itself."""
+    server = new_server()
+    session, wire = new_session(server)
+    for frequency in (
+        "0000000000000001",
+        "0000000000000000",
+        "7ff8000000000000",
+        "7ff0000000000000",
+        "408f400000000000",
+    ):
+        setup = bytes.fromhex(frequency) + b"timestamp"
+        assert answers(session, wire, packet("O", setup)) == [packet("O", b"\x00DOUBLE")]
+
+
 def test_outputs_are_sent_at_the_frequency_that_was_asked_for() -> None:
     """Not before the start; every other cycle at half of the control frequency."""
     server = new_server()

@@ -1,0 +1,154 @@
+"""Serves the emulators of a cell's devices and its side channel until it is cancelled."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from engine.cell.drivers import AssignedDriver, Emulator, EmulatorOptions, Ready, assigned_drivers, emulator
+from engine.document import load_cell, with_simulated_devices
+from engine.errors import FlexcellError
+from robots.drivers.cell_emulation.cell_emulator import CellEmulatorOptions
+from robots.drivers.cell_emulation.serve_franka_cell import has_franka, serve_franka_cell
+from robots.drivers.cell_emulation.switched_world_tool import SwitchedWorldTool
+from robots.drivers.cell_emulation.world_arm import WorldArm
+from robots.drivers.cell_emulation.world_judge import WorldJudge
+from robots.drivers.cell_emulation.world_time import WorldTime
+from robots.drivers.cell_emulation.world_tool import world_tool
+from robots.drivers.emulation.plant import Plant
+from robots.drivers.emulation.side_channel import SideChannel
+from robots.model.joint_map import JointMap
+from robots.scene.scene_builder import build_scene
+from robots.sim.world.sim_world import SimWorld, new_world
+from robots.switched.switched_options import SwitchedToolOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Device:
+    """One device with a driver, and its emulator."""
+
+    name: str
+    robot: str
+    is_tool: bool
+    emulator: Emulator
+    options: EmulatorOptions
+
+    @staticmethod
+    def of(assigned: AssignedDriver) -> _Device:
+        """Return the device; raises FlexcellError if it cannot be emulated where its driver connects."""
+        driver = assigned.driver()
+        chosen = emulator(assigned.kind)
+        model = assigned.model.rstrip("/").rpartition("/")[2]
+        options = chosen.options_for(assigned.options(driver), model=model)
+        name = assigned.device_name(driver)
+        return _Device(name=name, robot=assigned.robot, is_tool=assigned.tool, emulator=chosen, options=options)
+
+
+class EmulatedCell:
+    """The emulators of devices on an open world; each of them runs on this event loop.
+
+    Args:
+        devices: Those with emulators.
+        switched: The options of the tools that have none: the outputs of a controller switch them. By arm.
+        world: What they move.
+        time: The time of the world.
+        joint_maps: By arm, from the joints of the world to the angles of its controller.
+    """
+
+    def __init__(
+        self,
+        devices: tuple[_Device, ...],
+        switched: Mapping[str, SwitchedToolOptions],
+        world: SimWorld,
+        time: WorldTime,
+        *,
+        joint_maps: Mapping[str, JointMap],
+    ) -> None:
+        self._devices = devices
+        self._world = world
+        self._time = time
+        self._joint_maps = joint_maps
+        self._tools = {arm.name: arm.tool for arm in world.host.summary.arms}
+        self._switched = tuple(
+            SwitchedWorldTool(options, owner=options.device or arm, tool=world_tool(world, arm, tool))
+            for arm, options in switched.items()
+            if (tool := self._tools[arm]) is not None
+        )
+
+    async def serve(self, group: asyncio.TaskGroup) -> dict[str, Mapping[str, object]]:
+        """Start all emulators in a group, and return where they listen, by the name of the device."""
+        places: dict[str, Mapping[str, object]] = {}
+        for device in self._devices:
+            place: asyncio.Future[Mapping[str, object]] = asyncio.get_running_loop().create_future()
+            serving = device.emulator.run(device.options, place.set_result, plant=self._plant(device))
+            task = group.create_task(serving, name=device.name)
+            await asyncio.wait((task, place), return_when=asyncio.FIRST_COMPLETED)
+            if not place.done():
+                await task
+            places[device.name] = place.result()
+        return places
+
+    def _plant(self, device: _Device) -> Plant:
+        """Return what a device moves: the fingers of the tool, or the joints of the arm."""
+        tool = self._tools[device.robot]
+        if device.is_tool and tool is not None:
+            return Plant(tool=world_tool(self._world, device.robot, tool), clock=self._time)
+        arm = WorldArm(self._world.arm(device.robot), self._joint_maps[device.robot])
+        wired = [tool for tool in self._switched if tool.owner == device.robot]
+
+        def on_output(output: int, *, on: bool) -> None:
+            for each in wired:
+                each.take(output, on=on)
+
+        return Plant(arm=arm, on_output=on_output, clock=self._time)
+
+
+async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:
+    """Open the world of a cell with everything in it simulated, and serve until this is cancelled.
+
+    Raises:
+        FlexcellError: the cell has no device with a driver, or one of them cannot be emulated.
+    """
+    cell = load_cell(options.file)
+    assigned = tuple(assigned_drivers(cell))
+    if not assigned:
+        raise FlexcellError("no device of this cell has a driver", where=options.file)
+    simulated = with_simulated_devices(cell, ("all",))
+    seed = options.seed if options.seed >= 0 else None
+    if has_franka(assigned):
+        scene = build_scene(simulated.document, seed=seed, resolve=simulated.resolve)
+        await serve_franka_cell(assigned, scene, options, ready)
+        return
+    switched = dict(_switched_tools(assigned))
+    devices = tuple(_Device.of(each) for each in assigned if not (each.tool and each.robot in switched))
+    scene = build_scene(simulated.document, seed=seed, resolve=simulated.resolve)
+    joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
+    async with new_world(scene, virtual=True) as world:
+        time = WorldTime(world)
+        side = SideChannel(WorldJudge(world, time).execute, host=options.host, port=options.side_port)
+        async with time.passing() as stepping:
+            try:
+                async with asyncio.TaskGroup() as group:
+                    group.create_task(_end_with(stepping))
+                    emulated = EmulatedCell(devices, switched, world, time, joint_maps=joint_maps)
+                    places = await emulated.serve(group)
+                    ready({"host": options.host, "side_port": await side.open(), "devices": places})
+            finally:
+                side.close()
+                # What moves comes to rest in the time of the world, where that still passes.
+                if not stepping.done():
+                    await world.stop()
+
+
+def _switched_tools(assigned: tuple[AssignedDriver, ...]) -> Iterator[tuple[str, SwitchedToolOptions]]:
+    """Yield the options of the tools that outputs switch, by arm."""
+    for each in assigned:
+        options = each.options(each.driver())
+        if isinstance(options, SwitchedToolOptions):
+            yield each.robot, options
+
+
+async def _end_with(stepping: asyncio.Task[None]) -> None:
+    """Fail as soon as the world cannot be stepped any more."""
+    await asyncio.shield(stepping)

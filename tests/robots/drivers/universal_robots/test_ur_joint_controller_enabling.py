@@ -1,0 +1,100 @@
+"""A person enables a Universal Robots arm: twice at once, and while its controller stops."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+import threading
+
+import pytest
+
+from engine.errors import RobotError
+from tests.robots.drivers.arm_under_test import CLIENTS, connected
+from tests.robots.drivers.universal_robots.emulated_controller import ANSWER_LIMIT_S, EmulatedController
+from tests.robots.drivers.universal_robots.faulty_ur_arm import press
+from tests.robots.sim.sim_cell import until
+
+
+@pytest.fixture(params=CLIENTS)
+def client(request: pytest.FixtureRequest) -> str:
+    """The client of the driver."""
+    return str(request.param)
+
+
+def start_other(controller: EmulatedController) -> None:
+    """Start another program, as a person does, and wait until it runs."""
+    with socket.create_connection((controller.host, 30002), timeout=ANSWER_LIMIT_S) as connection:
+        connection.sendall(b"def other():\n  while True:\n    sync()\n  end\nend\n")
+        while controller.state()["program"] != "other":
+            pass
+
+
+async def test_closing_leaves_the_program_that_a_person_has_started_meanwhile(client: str) -> None:
+    with EmulatedController() as controller:
+        async with connected(controller, client=client) as connection:
+            await connection.enable()
+            await asyncio.to_thread(press, controller.host, "stop")
+            await until(lambda: connection.problem.startswith("program ended: "))
+            await asyncio.to_thread(start_other, controller)
+            await connection.report(readings=5)
+        state = controller.state()
+        assert (state["program"], state["runtime_state"]) == ("other", "PLAYING")
+
+
+async def test_a_lost_process_leaves_the_program_that_a_person_has_started_meanwhile(client: str) -> None:
+    """The engine stops the arm by the dashboard only where it may move: what runs else is not ours."""
+    with EmulatedController() as controller:
+        async with connected(controller, client=client) as connection:
+            await connection.enable()
+            await asyncio.to_thread(press, controller.host, "stop")
+            await until(lambda: connection.problem.startswith("program ended: "))
+            await asyncio.to_thread(start_other, controller)
+            os.kill(connection.process_id, signal.SIGKILL)
+            await until(lambda: bool(connection.lost_reason))
+            await until(lambda: not connection.lost_reason)
+        state = controller.state()
+        assert (state["program"], state["runtime_state"]) == ("other", "PLAYING")
+
+
+async def test_the_script_client_sees_that_another_program_has_replaced_its_own() -> None:
+    """The library does not; there the arm is off its path when a motion begins."""
+    with EmulatedController() as controller:
+        async with connected(controller, client="script") as connection:
+            await connection.enable()
+            await asyncio.to_thread(start_other, controller)
+            await until(lambda: connection.problem.startswith("program ended: another program"))
+        state = controller.state()
+        assert (state["program"], state["runtime_state"]) == ("other", "PLAYING")
+
+
+async def test_two_who_enable_at_once_leave_no_pulse_that_ends_the_next_process(client: str) -> None:
+    with EmulatedController() as controller:
+        async with connected(controller, client=client, process_silence_s=4.0) as connection:
+            await asyncio.gather(connection.enable(), connection.enable())
+            os.kill(connection.process_id, signal.SIGKILL)
+            await until(lambda: bool(connection.lost_reason))
+            await until(lambda: not connection.lost_reason)
+            process = connection.process_id
+            await connection.report(readings=200)
+            assert connection.process_id == process
+
+
+async def test_a_stop_of_the_controller_that_comes_with_the_answer_is_not_forgotten(client: str) -> None:
+    with EmulatedController() as controller:
+        async with connected(controller, client=client) as connection:
+            asked: list[object] = []
+
+            def stop_at_once() -> None:
+                """Let the answer and the stop arrive together: the event loop waits for both."""
+                if not connection.problem and not asked:
+                    asked.append(controller.ask("protective_stop"))
+                    threading.Event().wait(0.5)
+
+            connection.when_changed(stop_at_once)
+            with pytest.raises(RobotError, match="protective stop"):
+                await connection.enable()
+            assert asked
+            await connection.report(readings=10)
+            assert "protective stop" in connection.problem
