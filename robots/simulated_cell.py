@@ -7,12 +7,12 @@ from functools import partial
 from msgspec.structs import replace
 
 from engine.bus import SkillBus
+from engine.cell.drivers import digital_outputs
 from engine.clock import Clock
 from engine.document import Cell
 from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
-from robots.arm.services.output_services import OutputServices
-from robots.model.robot_model import RobotModel
+from robots.arm.services.output_services import OutputServices, require_outputs
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.host.process_host import NewStopLine
@@ -41,7 +41,15 @@ def new_world(
         CellError: a model is unknown, or a size or gripper does not fit.
     """
     rule = separation_rule(cell.document)
-    scene = replace(build_scene(cell.document, seed=seed, resolve=cell.resolve), separation=rule)
+    driven = [name for name, robot in cell.document.robots.items() if not robot.simulated]
+    if rule is not None and driven:
+        raise CellError(
+            f"speed and separation monitoring does not slow arms with a driver down yet: {', '.join(driven)}",
+            where=cell.source.position(("robots", driven[0], "driver")),
+            hint="remove `separation`, and use the safety functions of the controller",
+        )
+    scene = build_scene(cell.document, seed=seed, resolve=cell.resolve)
+    scene = replace(scene, separation=rule, arms=tuple(_with_outputs(cell, arm) for arm in scene.arms))
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
@@ -52,7 +60,9 @@ def new_world(
             occupancy=cameras if cell.document.occupancy is not None else None,
             unknown_space=UnknownSpaceRule.of(cell.document.occupancy, cameras=cell.document.cameras),
         )
-        arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
+        arms = tuple(
+            _arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms if not placement.driven
+        )
         devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
         if rule is not None and cameras is not None:
             look = WorldPoseReader(world, scene)
@@ -81,23 +91,19 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         port=world.arm(placement.name),
         clock=clock,
         gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
-        outputs=_outputs(cell, world, placement.name, model),
+        outputs=_outputs(cell, world, placement),
         workspace=workspace,
     )
 
 
-def _outputs(cell: Cell, world: SimWorld, name: str, model: RobotModel) -> OutputServices | None:
+def _with_outputs(cell: Cell, arm: ArmPlacement) -> ArmPlacement:
+    """Return the arm with the outputs of its controller, which its driver knows even while the arm is simulated."""
+    return replace(arm, digital_outputs=digital_outputs(cell, arm.name, of_model=arm.robot().digital_outputs))
+
+
+def _outputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> OutputServices | None:
     """Return the outputs of an arm, None without any; raises CellError where the cell names a missing output."""
-    uses = cell.document.robots[name].outputs
-    for use, output in uses.items():
-        if output >= model.digital_outputs:
-            has = f"the outputs 0 to {model.digital_outputs - 1}" if model.digital_outputs else "no outputs"
-            raise CellError(
-                f"{name} has no output {output} for {use}",
-                where=cell.source.position(("robots", name, "outputs", use)),
-                hint=f"a {model.name} has {has}",
-            )
-    port = world.outputs(name)
-    if port is None:
-        return None
-    return OutputServices(name, port, uses={str(use): output for use, output in uses.items()})
+    name, port = placement.name, world.outputs(placement.name)
+    count = len(port.values) if port is not None else 0
+    uses = require_outputs(cell, name, count=count, owner=f"a {placement.robot().name}")
+    return OutputServices(name, port, uses=uses) if port is not None else None

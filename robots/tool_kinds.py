@@ -47,6 +47,14 @@ def load_simulation(name: str) -> object:
     return _found_at(tool_kind(name).simulation)
 
 
+def load_switched(name: str) -> object:
+    """Return what serves a tool of a kind on digital outputs; raises CellError for a kind without."""
+    kind = tool_kind(name)
+    if not kind.switched:
+        raise CellError(f"a tool of the kind {name} cannot be switched by outputs", where=name)
+    return _found_at(kind.switched)
+
+
 def load_mechanisms() -> tuple[object, ...]:
     """Return the models of the mechanisms of all kinds."""
     return tuple(_found_at(place) for kind in tool_kinds().values() for place in kind.mechanisms.values())

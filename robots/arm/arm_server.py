@@ -45,7 +45,9 @@ class SkillGroup(Protocol):
 
 
 class ArmServer:
-    """Implements `engine.robot.Robot`; executes one motion goal at a time, the gripper in parallel.
+    """Implements `engine.robot.Robot` and `robots.port.OutputOwner`.
+
+    It executes one motion goal at a time, the gripper in parallel.
 
     Args:
         name: Bus namespace and resource of the arm.
@@ -83,6 +85,7 @@ class ArmServer:
             path_guard=PathGuard(name, workspace) if workspace is not None else None,
         )
         self._gripper = gripper
+        self.outputs = outputs
         self._report = report = ArmStatusPublisher(runner)
         self._groups: tuple[SkillGroup, ...] = (
             PathMotions(runner),

@@ -42,7 +42,8 @@ class MotionExecutor:
 
     `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
     control period with the measured arm. `pace` is the speed override of every motion, `permitted_pace` the share of
-    its full speed that separation monitoring permits.
+    its full speed that separation monitoring permits, `controller_pace` that which a real controller permits of any
+    speed.
     """
 
     def __init__(self, *, joints: tuple[str, ...], limits: JointLimits, touching: Callable[[], str]) -> None:
@@ -53,6 +54,7 @@ class MotionExecutor:
         self._rest_s = 0.0
         self.pace = 1.0
         self.permitted_pace = 1.0
+        self.controller_pace = 1.0
         self._yielding: YieldGenerator | None = None
         self.position = np.zeros(len(joints))
         self.velocity = np.zeros(len(joints))
@@ -170,7 +172,7 @@ class MotionExecutor:
             self._yielding.step(step_s, position)
             self._take(self._yielding)
         else:
-            pace = min(self.pace, self.permitted_pace)
+            pace = min(self.pace, self.permitted_pace) * self.controller_pace
             target = 0.0 if following.hold or following.ending is not None else pace
             following.generator.step(step_s, target_pace=target, state=state)
             self._take(following.generator)

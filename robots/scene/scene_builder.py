@@ -21,8 +21,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
 
     The errors of the arms are drawn with the seed too, with 0 without one.
 
-    Robots with another driver than `sim` are omitted. `resolve` resolves the document's paths
-    (`Cell.resolve`).
+    Arms with another driver than `sim` are bodies only. `resolve` resolves the document's paths (`Cell.resolve`).
 
     Raises:
         CellError: a robot or gripper model is unknown, or the cell has no world.
@@ -39,7 +38,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         engine_silence_s=world.engine_silence_s,
         world_silence_s=world.world_silence_s,
         start_limit_s=world.start_limit_s,
-        arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
+        arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items()),
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
         people=tuple(_person(name, person) for name, person in document.people.items()),
@@ -75,6 +74,16 @@ def _fixture(name: str, fixture: Fixture) -> FixtureBody:
     )
 
 
+def driven_arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
+    """Return the placement of an arm with a driver.
+
+    Raises:
+        CellError: its model is unknown.
+        DocumentError: a model folder or a calibration file is invalid.
+    """
+    return _arm(name, robot, resolve)
+
+
 def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
     placement = ArmPlacement(
         name=name,
@@ -83,7 +92,8 @@ def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
         gripper=model_location(robot.gripper.model, resolve) if robot.gripper is not None else None,
         calibration=str(resolve(robot.calibration)) if robot.calibration is not None else None,
         coupled_joints=robot.coupled_joints,
-        driven_tool=robot.gripper is not None and bool(robot.gripper.driver_kind),
+        driven_tool=robot.gripper is not None and (bool(robot.gripper.driver_kind) or not robot.simulated),
+        driven=not robot.simulated,
     )
     try:
         placement.robot()

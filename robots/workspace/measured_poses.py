@@ -12,7 +12,7 @@ from robots.model.transform import RigidTransform
 class MeasuredArm:
     """One arm: its joints (radians, n), the tool's joints by name (radians or meters), and the part in the tool.
 
-    `holds` is the name of the part by contact; empty for none, and for a tool that cannot tell what it touches.
+    `holds` is the name of the part, by contact, or as the world lets it follow a tool with a driver; empty for none.
     """
 
     joints_rad: tuple[float, ...]

@@ -16,10 +16,10 @@ from engine.errors import FlexcellError
 from engine.messages.sensing import CameraStatus, OccupancyGrid
 from engine.messages.separation import SeparationState
 from engine.robot import DeviceStatus
+from robots.control.commanding.arm_commands import MeasureSeparation
 from robots.planning.scene.planning_scene import AttachedPart
 from robots.port import GraspCommand, MeasuredSeparation, PermittedSpeed
 from robots.scene.sim_scene import ArmPlacement, SimScene
-from robots.sim.commands.arm_commands import MeasureSeparation
 from robots.sim.world.sim_world import SimWorld
 from robots.vision.known_geometry import ArmConfiguration
 from robots.vision.occupancy.arm_body import ArmBody

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from engine.messages.tool_hold import ToolHold
 from robots.model.transform import RigidTransform
 from robots.scene.sim_scene import SimScene
 from robots.sim.grip.tool_reading import state_publisher
@@ -46,6 +47,8 @@ def _held_part(snapshot: SimSnapshot, arm: ArmSummary, *, parts: tuple[str, ...]
     """Return the part that the tool of an arm holds, by contact; empty if none, or if its name is not measured."""
     if arm.tool is None:
         return ""
+    following = snapshot.held_part(arm.name)
+    if following:
+        return following
     state = state_publisher(arm.tool.kind).state(snapshot.tool(arm.name), arm.tool, parts=parts)
-    part = str(getattr(state, "part", "")) if getattr(state, "held", False) else ""
-    return part if part in parts else ""
+    return state.part if isinstance(state, ToolHold) and state.held and state.part in parts else ""

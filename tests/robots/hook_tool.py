@@ -15,6 +15,7 @@ from engine.cell import ToolKind
 from engine.messages import Message
 from engine.skill import Action
 from engine.state import Context, Outcome, State
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.control.motion_event import AnyMotionEvent
 from robots.control.tool_drives.grip_task import TaskDrive
 from robots.gripper import ToolServer
@@ -29,7 +30,6 @@ from robots.sim.physics.cell_model import ArmIndices
 from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.physics import Physics
 from robots.sim.physics.tool_body import Indices, as_indices
-from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.ports.tool_ports import ToolLine
 from robots.sim.world.sim_world import SimWorld
 from robots.standard_tools.tool_simulation import ToolSimulation
@@ -162,7 +162,7 @@ class HookPort:
     def __init__(self, line: ToolLine) -> None:
         self.line = line
 
-    def turn(self, *, hooked: bool) -> SimMotion:
+    def turn(self, *, hooked: bool) -> CommandedMotion:
         return self.line.start(self.line.number(), (float(hooked),))
 
 

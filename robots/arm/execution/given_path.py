@@ -10,8 +10,8 @@ import numpy as np
 
 from engine.bus import ActiveGoal
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.given_path_motion import GivenPathMotion
 from robots.arm.execution.lookahead_path import PathReservation
-from robots.arm.execution.monitored_motion import MonitoredMotion
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.scene_queries.path_guard import AdmittedPath, PathGuard, Timing
 from robots.planning.request import ToolContact
@@ -64,17 +64,23 @@ class GivenPath:
         """Return the motion of the port, monitored on the path that was planned, and reserved for this arm."""
         if self._guard is None or self._admitted is None:
             return motion
-        runner = self._runner
-        return MonitoredMotion(
-            motion,
-            self._admitted.trajectory,
-            self._admitted.rules,
-            guard=self._guard,
-            options=self._options,
-            reservation=PathReservation(runner, self._guard.workspace, made=True),
-            clock=runner.clock,
-            acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
-        )
+        return monitored_motion(motion, self._admitted, self._runner, guard=self._guard, options=self._options)
+
+
+def monitored_motion(
+    motion: Motion, path: AdmittedPath, runner: MotionRunner, *, guard: PathGuard, options: CollisionOptions
+) -> Motion:
+    """Return a motion of the port along a path, monitored and reserved for this arm."""
+    return GivenPathMotion(
+        motion,
+        path.trajectory,
+        path.rules,
+        guard=guard,
+        options=options,
+        reservation=PathReservation(runner, guard.workspace, made=True),
+        clock=runner.clock,
+        acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
+    )
 
 
 @asynccontextmanager

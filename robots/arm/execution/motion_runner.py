@@ -108,6 +108,11 @@ class MotionRunner:
         return self.moving or self._planning > 0
 
     @property
+    def stops(self) -> int:
+        """How often the arm has been stopped."""
+        return self._stops
+
+    @property
     def mode(self) -> ArmMode:
         """The current mode of the arm."""
         if self.status is DeviceStatus.DISCONNECTED:

@@ -14,7 +14,8 @@ Monitored = Callable[[Motion], Motion]
 """Returns a motion of the port, monitored."""
 
 
-def _unmonitored(motion: Motion) -> Motion:
+def unmonitored(motion: Motion) -> Motion:
+    """Return the motion itself."""
     return motion
 
 
@@ -24,7 +25,7 @@ async def follow_joints(
     handle: ActiveGoal[JointMotionFeedback],
     *,
     mode: ArmMode = "moving",
-    monitored: Monitored = _unmonitored,
+    monitored: Monitored = unmonitored,
 ) -> JointMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured joints."""
     start = runner.set_point()
@@ -51,7 +52,7 @@ async def follow_tool(
     handle: ActiveGoal[CartMotionFeedback],
     *,
     mode: ArmMode = "moving",
-    monitored: Monitored = _unmonitored,
+    monitored: Monitored = unmonitored,
 ) -> CartMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured pose of the tool."""
     start = runner.set_point()

@@ -9,11 +9,13 @@ from typing import TypeVar
 
 from engine.errors import FlexcellError
 from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.execution.collision_prediction import PredictedCollision
 from robots.arm.execution.lookahead_path import PathReservation
+from robots.arm.execution.monitored_motion import MonitoredMotion
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.free_motion.adaptive_motion_report import AdaptiveMotionListener, AdaptiveMotionReport
 from robots.arm.free_motion.blocked_path_policy import BlockedPathPolicy
-from robots.arm.free_motion.path_monitor import PathMonitor, PredictedCollision
+from robots.arm.free_motion.path_monitor import PathMonitor
 from robots.arm.scene_queries.path_planner import PathPlanner, PathSegment
 from robots.arm.scene_queries.planner_query import QuerySuperseded, await_answer, discard_query
 from robots.planning.request import PlanRefusal
@@ -26,12 +28,11 @@ T = TypeVar("T")
 _log = logging.getLogger("flexcell.arm")
 
 
-class AdaptiveMotion:
-    """Implements `robots.port.Motion` by consecutive motions of the port, each along a validated path.
+class AdaptiveMotion(MonitoredMotion):
+    """Monitors consecutive motions of the port, each along a planned path.
 
-    While it moves, every change of the scene triggers a check of the remaining path. If that is blocked, the arm
-    decelerates on the path. At rest it resumes the remaining path if that is free again, else follows a new path
-    from there, else tries again after the next change. A hold persists through all of that; a cancel ends it.
+    At rest it resumes the remaining path if that is free again, else follows a new path from there, else tries again
+    after the next change. A hold persists through all of that; a cancel ends it.
 
     Args:
         segment: The first path, which starts at the set point; or the reason why there is none yet: the motion then
@@ -53,18 +54,17 @@ class AdaptiveMotion:
         adaptation: Adaptation,
         listener: AdaptiveMotionListener,
     ) -> None:
+        reservation = PathReservation(runner, workspace, made=adaptation.watch)
+        super().__init__(arm=runner.name, reservation=reservation)
         self._runner = runner
         self._planner = planner
-        self._workspace = workspace
-        self._monitor = PathMonitor(runner, planner, workspace)
-        self._reservation = PathReservation(runner, workspace, made=adaptation.watch)
+        self._paths = PathMonitor(runner, planner, workspace)
         self._waiting = BlockedPathPolicy(runner.clock, patience_s=adaptation.patience_s)
         self._adaptation = adaptation
         self._listener = listener
         self._clock = runner.clock
-        self._changed = asyncio.Event()
         self._phase_waiters: list[asyncio.Future[None]] = []
-        self._held = self._halted = self._checking = False
+        self._checking = False
         self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._attempts = 0
         self._detected_late = self._replan_failure = ""
@@ -72,37 +72,17 @@ class AdaptiveMotion:
         self.phase: MotionPhase = "moving"
         self.reason = ""
         self._segment: PathSegment | None = None
-        self._inner: Motion | None = None
-        self._end: asyncio.Future[MotionReport] | None = None
+        self._obstacle = "" if isinstance(segment, PathSegment) else segment
         if isinstance(segment, PathSegment):
             self._follow(segment)
         else:
             self._halted, self.phase = True, "planning"
-        self._unwatch = workspace.watch(self._notice) if adaptation.watch else _no_operation
-        self._task = asyncio.create_task(
-            self._run("" if isinstance(segment, PathSegment) else segment), name=f"adaptive motion of {runner.name}"
-        )
-
-    @property
-    def progress(self) -> float:
-        """Elapsed share of the current path's duration, 0 to 1."""
-        return self._inner.progress if self._inner is not None else 0.0
+        self._start(workspace if adaptation.watch else None)
 
     @property
     def waited_s(self) -> float:
         """Total time waited for a free path."""
         return self._waiting.total_s
-
-    async def report(self) -> MotionReport:
-        """Wait for the end."""
-        return await asyncio.shield(self._task)
-
-    async def hold(self) -> None:
-        """Decelerate on the path and return when at rest; nothing moves the arm before `resume`."""
-        self._held = self._halted = True
-        self._changed.set()
-        if self._inner is not None:
-            await self._inner.hold()
 
     async def resume(self) -> None:
         """Check whether the path is free; return when moving, or when the path is known to be blocked."""
@@ -120,35 +100,14 @@ class AdaptiveMotion:
         if not self._cancelled:
             self._cancelling.set_result(None)
         self._changed.set()
-        if self._inner is not None:
-            self._inner.cancel()
+        super().cancel()
 
-    def _notice(self, names: frozenset[str]) -> None:
-        """Handle a change of the scene."""
-        if self._runner.name in names and not self._halted:
-            self._reservation.update(self._passed_s)
-        others = names - {self._runner.name}
-        if others or not names:
-            self._monitor.note(others)
-            self._waiting.something_changed()
-            self._changed.set()
+    def _note(self, names: frozenset[str]) -> None:
+        self._paths.note(names)
+        self._waiting.something_changed()
 
-    async def _run(self, obstacle: str) -> MotionReport:
-        try:
-            return await self._go(obstacle)
-        except Exception as error:
-            # Whatever fails here, the arm must not continue unmonitored, and its goal must end with the reason.
-            _log.exception("%s: the adaptive motion failed", self._runner.name)
-            await self._cancel_inner()
-            return MotionReport(end=MotionEnd.FAILED, reason=f"{type(error).__name__}: {error}")
-        finally:
-            self._unwatch()
-            self._reservation.withdraw()
-            if self._end is not None:
-                self._end.cancel()
-
-    async def _go(self, obstacle: str) -> MotionReport:
-        reason: str | None = obstacle or await self._pass()
+    async def _go(self) -> MotionReport:
+        reason: str | None = self._obstacle or await self._pass()
         while reason is not None:
             report = await self._until_free(reason)
             if report is not None:
@@ -166,8 +125,7 @@ class AdaptiveMotion:
         self._enter("moving", "")
         self._reservation.update(self._passed_s)
         while not end.done():
-            await self._next_change(end)
-            self._changed.clear()
+            await self._next_change()
             if end.done() or self._cancelled:
                 await asyncio.wait((end,))
                 return None
@@ -176,7 +134,7 @@ class AdaptiveMotion:
             if not self._adaptation.watch:
                 continue
             try:
-                collision = await self._answer(self._monitor.ahead(segment, from_s=self._passed_s))
+                collision = await self._answer(self._paths.ahead(segment, from_s=self._passed_s))
             except QuerySuperseded:
                 continue
             if collision is not None and not end.done():
@@ -211,8 +169,7 @@ class AdaptiveMotion:
             if self._held:
                 self._waiting.end()
                 self._enter("waiting", _HELD)
-                await self._next_change(None)
-                self._changed.clear()
+                await self._next_change()
                 continue
             self._changed.clear()
             try:
@@ -226,7 +183,7 @@ class AdaptiveMotion:
                 continue
             if (over := await self._patience_over(why)) is not None:
                 return over
-            await self._next_change(None, timeout_s=self._waiting.next_look_s)
+            await self._next_change(self._waiting.next_look_s)
             # Changes in quick succession count as one: decisions always use the latest scene.
 
     async def _over(self) -> MotionReport | None:
@@ -241,15 +198,6 @@ class AdaptiveMotion:
             self._waiting.end()
             return self._end.result()
         return None
-
-    async def _cancel_inner(self) -> MotionReport | None:
-        """Cancel the motion of the port and return its report; None without a motion."""
-        inner, end = self._inner, self._end
-        if inner is None or end is None:
-            return None
-        inner.cancel()
-        await asyncio.wait((end,))
-        return end.result()
 
     async def _patience_over(self, why: str) -> MotionReport | None:
         """Continue to wait for the reason `why`, or give up the motion when the patience is exhausted."""
@@ -266,7 +214,7 @@ class AdaptiveMotion:
 
     async def _move_again(self, *, reused: bool) -> str:
         """Move again, along the current path or a new one; return why that is impossible, empty on success."""
-        monitor, waiting = self._monitor, self._waiting
+        monitor, waiting = self._paths, self._waiting
         try:
             if not self._adaptation.watch:
                 return await self._resume(reused=False)
@@ -310,7 +258,7 @@ class AdaptiveMotion:
         if isinstance(segment, PlanRefusal):
             return f"; {segment.message}"
         # Only this check covers changes since the search started.
-        collision = await self._answer(self._monitor.along(segment))
+        collision = await self._answer(self._paths.along(segment))
         if collision is not None:
             return f"; on the new path {collision.reason}"
         if self._held or self._cancelled:
@@ -347,30 +295,14 @@ class AdaptiveMotion:
     def _follow(self, segment: PathSegment) -> None:
         """Start to follow a path; raises RobotError if the arm rejects it."""
         runner = self._runner
-        self._inner = inner = runner.port.follow(segment.trajectory, tolerance=runner.tolerance)
-        self._end = asyncio.ensure_future(inner.report())
-        self._segment, self._halted = segment, False
+        self._monitor(runner.port.follow(segment.trajectory, tolerance=runner.tolerance), segment.trajectory)
+        self._segment = segment
         self._detected_late = self._replan_failure = ""
-        self._reservation.renew(segment.trajectory)
         self._listener.follows(segment)
 
     @property
     def _cancelled(self) -> bool:
         return self._cancelling.done()
-
-    @property
-    def _passed_s(self) -> float:
-        """Elapsed time of the current path, in seconds of its own time."""
-        return self.progress * self._segment.trajectory.duration_s if self._segment is not None else 0.0
-
-    async def _next_change(self, end: asyncio.Future[MotionReport] | None, *, timeout_s: float | None = None) -> None:
-        """Return at the next change, when `end` is done, or after `timeout_s`."""
-        changed = asyncio.ensure_future(self._changed.wait())
-        try:
-            waits = (changed,) if end is None else (changed, end)
-            await asyncio.wait(waits, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            changed.cancel()
 
     def _enter(self, phase: MotionPhase, reason: str) -> None:
         if (phase, reason) != (self.phase, self.reason):
@@ -384,7 +316,3 @@ class AdaptiveMotion:
         for waiter in waiters:
             if not waiter.done():
                 waiter.set_result(None)
-
-
-def _no_operation() -> None:
-    """Do nothing."""

@@ -13,10 +13,11 @@ import numpy as np
 
 from engine.errors import FlexcellError
 from engine.skills.jogging import JogBlock, JogCollisionOptions
+from robots.arm.execution.collision_prediction import predict_collision
 from robots.arm.execution.motion_runner import MotionRunner
+from robots.arm.execution.stopping_path import BRAKING_SHARE, REACTION_S
 from robots.arm.jogging.directions_out import DirectionsOut
 from robots.arm.jogging.press_queue import Row
-from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array, JointTrajectory
@@ -25,13 +26,12 @@ from robots.workspace.workspace import Workspace
 ToJoints = Callable[[Array, Array], Array]
 """Maps a commanded velocity and joint positions (n,) to joint velocities (n,)."""
 
-# Period of the checks, greatest age of a result when it takes effect, and timeout of a check.
-_CHECK_PERIOD_S, _REACTION_S, _TIMEOUT_S = 0.03, 0.12, 0.3
+_CHECK_PERIOD_S = 0.03
 # Timeout of a search for the directions out, which ends for another direction of the jog.
 _SEARCH_TIMEOUT_S = 1.0
 _STEP_S, _LONGEST_S = 0.01, 3.0
-# Share of the acceleration limits with which a jog decelerates (0.5, less for its jerk), and of the free path used.
-_BRAKING_SHARE, _USED_SHARE = 0.4, 0.9
+# Share of the free path that is used.
+_USED_SHARE = 0.9
 # Below this share of the commanded velocity the arm stands still.
 _CREEP = 0.02
 # A velocity within 11 degrees of the checked direction counts as checked.
@@ -79,7 +79,7 @@ class JogGuard:
         self._directions_out = directions_out
         self._publish = publish
         self._published: tuple[NamePair, Array] | None = None
-        self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
+        self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * BRAKING_SHARE
         self._commanded = np.zeros(0)
         self._limit: _SpeedLimit | None = None
         self._recheck = asyncio.Event()
@@ -192,25 +192,19 @@ class JogGuard:
 
     async def _check(self, commanded: Array) -> tuple[float, str, NamePair | None]:
         """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""
-        if self._scene.unobserved_reason:
-            return 0.0, self._scene.unobserved_reason, None
         path, travelled_s, slowing_s = self._ahead(commanded)
-        try:
-            async with asyncio.timeout(_TIMEOUT_S):
-                check = await self._scene.check(path)
-        except TimeoutError:
-            return 0.0, f"its path was not checked within {_TIMEOUT_S:g} s", None
-        except FlexcellError as error:
-            return 0.0, f"path monitoring is not available: {error.message}", None
-        if check.blocked_at_s is None:
+        found = await predict_collision(self._workspace, self._scene.check(path))
+        if found is None:
             return float(np.linalg.norm(commanded)), "", None
+        if found.is_unmonitored:
+            return 0.0, found.reason, None
         # The free path ends at the sample before the first contact.
-        free_s = float(travelled_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
+        free_s = float(travelled_s[max(0, round(found.at_s / _STEP_S) - 1)])
         share = _stoppable_share(free_s * _USED_SHARE, slowing_s)
         return (
             float(np.linalg.norm(commanded)) * share,
-            describe_contacts(check.pairs),
-            self._pair_of(check.pairs),
+            found.reason,
+            self._pair_of(found.pairs),
         )
 
     def _pair_of(self, pairs: Sequence[NamePair]) -> NamePair | None:
@@ -228,7 +222,7 @@ class JogGuard:
         sample = self._runner.port.sample()
         joints, velocity = sample.desired_rad.copy(), sample.velocity_rad_s.copy()
         rows, travelled = [joints], [0.0]
-        reaction, longest = round(_REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
+        reaction, longest = round(REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
         requested = self._to_joints(commanded, joints)
         for k in range(longest):
             if k < reaction:
@@ -256,5 +250,5 @@ def _stoppable_share(free_s: float, slowing_s: float) -> float:
 
     At a share k it travels k times the reaction time, plus k² times `slowing_s` while it decelerates.
     """
-    share = (math.sqrt(_REACTION_S**2 + 4.0 * slowing_s * free_s) - _REACTION_S) / max(1e-9, 2.0 * slowing_s)
+    share = (math.sqrt(REACTION_S**2 + 4.0 * slowing_s * free_s) - REACTION_S) / max(1e-9, 2.0 * slowing_s)
     return 0.0 if share < _CREEP else min(1.0, share)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Awaitable, Callable
-from contextlib import AsyncExitStack
+from collections.abc import AsyncGenerator, Awaitable, Callable
+from contextlib import AsyncExitStack, asynccontextmanager
 from typing import Any
 
 import msgspec
@@ -13,7 +13,9 @@ import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus, Topic
 from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
+from engine.messages.tool_hold import ToolHold
 from engine.skills.axes import Axes
+from engine.skills.collision_options import CollisionOptions
 from engine.skills.jogging import (
     JogBlock,
     JogCollisionOptions,
@@ -28,13 +30,15 @@ from engine.skills.jogging import (
     ToolJogFeedback,
 )
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
+from robots.arm.execution.given_path import monitored_motion
 from robots.arm.execution.motion_runner import MotionCompletion, MotionRunner
-from robots.arm.execution.trajectory_goal import follow_joints, follow_tool
+from robots.arm.execution.trajectory_goal import Monitored, follow_joints, follow_tool, unmonitored
 from robots.arm.jogging.directions_out import DirectionsOut
 from robots.arm.jogging.jog_guard import JogGuard, ToJoints
 from robots.arm.jogging.jog_run import JogRun
 from robots.arm.jogging.press_queue import Row
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
+from robots.arm.scene_queries.path_guard import AdmittedPath, PathRules
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.control.generators.damped_inverse import joint_velocity, twist_rows
 from robots.model.transform import RigidTransform, product, quaternion_of
@@ -204,8 +208,7 @@ class JogMotions:
         except BusError:
             # A tool that publishes nothing tells nothing.
             return ""
-        part = str(getattr(state, "part", "")) if getattr(state, "held", False) else ""
-        return "" if part == _UNKNOWN_PART else part
+        return state.part if isinstance(state, ToolHold) and state.held and state.part != _UNKNOWN_PART else ""
 
     def _joint_velocity(self, twist: Array, joints: Array) -> Array:
         _, jacobian = self._runner.kinematics.tool_pose_and_jacobian(joints)
@@ -254,6 +257,18 @@ class JogMotions:
             await AttachedPartGuard(self._runner.name, self._workspace).require_free(trajectory)
         return trajectory
 
+    @asynccontextmanager
+    async def _monitored(self, trajectory: JointTrajectory, rule: JogCollisionOptions) -> AsyncGenerator[Monitored]:
+        """Monitor a step meanwhile, as motions along given paths are."""
+        guard = self._runner.path_guard
+        if guard is None or self._workspace is None or not rule.minded:
+            yield unmonitored
+            return
+        may_touch = self._with_held_part(rule, self._workspace).may_touch
+        path = AdmittedPath(trajectory=trajectory, rules=PathRules(tool_contact="never", may_touch=may_touch))
+        async with guard.observed():
+            yield lambda motion: monitored_motion(motion, path, self._runner, guard=guard, options=CollisionOptions())
+
     async def _step_joints(self, goal: StepJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
         runner = self._runner
         if len(goal.step_rad) != runner.model.dof:
@@ -268,7 +283,8 @@ class JogMotions:
                 runner.planner.to_joints(start, start + np.array(goal.step_rad), speed=goal.speed), goal.scene
             ),
         )
-        return await follow_joints(runner, trajectory, handle, mode="jogging")
+        async with self._monitored(trajectory, goal.scene) as monitored:
+            return await follow_joints(runner, trajectory, handle, mode="jogging", monitored=monitored)
 
     async def _step_tool(self, goal: StepTool, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
         runner = self._runner
@@ -281,7 +297,8 @@ class JogMotions:
                 runner.planner.along_line(joints, end, duration_s=_step_time_s(goal)), goal.scene
             ),
         )
-        return await follow_tool(runner, trajectory, handle, mode="jogging")
+        async with self._monitored(trajectory, goal.scene) as monitored:
+            return await follow_tool(runner, trajectory, handle, mode="jogging", monitored=monitored)
 
     def _step_goal(
         self, goal: StepTool, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]

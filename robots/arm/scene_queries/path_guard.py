@@ -42,10 +42,14 @@ Timing = Literal["free", "fixed"]
 
 @dataclass(frozen=True, kw_only=True)
 class PathRules:
-    """The contacts that one motion may make: those of its kind, and those with the names in `may_touch`."""
+    """The contacts that one motion may make: those of its kind, and those with the names in `may_touch`.
+
+    With a `person_at_arm`, who leads it, what the cameras see is no obstacle.
+    """
 
     tool_contact: ToolContact = "at_end"
     may_touch: tuple[str, ...] = ()
+    person_at_arm: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,8 +106,7 @@ class PathGuard:
         if tool_contact == "at_end":
             # The scene allows contact of a part with what it was picked from, at any depth.
             await self._attached.require_free(trajectory)
-        carried = await self._carried(trajectory.position_rad[0])
-        rules = PathRules(tool_contact=tool_contact, may_touch=(*options.may_touch, *carried))
+        rules = await self.rules_at(trajectory.position_rad[0], options=options, tool_contact=tool_contact)
         check = await self.check(trajectory, rules, from_s=0.0)
         if check.blocked_at_s is not None and not await self._moves_away(check.pairs):
             raise PathBlocked(
@@ -114,6 +117,15 @@ class PathGuard:
         known = await self._through_known_space(trajectory, kinematics, timing)
         return AdmittedPath(trajectory=known, rules=rules)
 
+    async def rules_at(
+        self, joints: Array, *, options: CollisionOptions, tool_contact: ToolContact, person_at_arm: bool = False
+    ) -> PathRules:
+        """Return the rules of a motion that starts at `joints` (n,); raises as `admit` does."""
+        carried = await self._carried(joints)
+        return PathRules(
+            tool_contact=tool_contact, may_touch=(*options.may_touch, *carried), person_at_arm=person_at_arm
+        )
+
     async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
         workspace = self.workspace
@@ -123,7 +135,7 @@ class PathGuard:
                 arm=self.arm,
                 trajectory=trajectory,
                 from_s=from_s,
-                occupancy=workspace.occupancy,
+                occupancy=None if rules.person_at_arm else workspace.occupancy,
                 tool_contact=rules.tool_contact,
             )
         )

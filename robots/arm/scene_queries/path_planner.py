@@ -141,15 +141,15 @@ class PathPlanner:
         """Return where a path that was just planned is blocked in the current scene; raises as `find` does."""
         return await self._workspace.planners.confirm_path(self._check_request(segment.trajectory, 0.0, self.margin_m))
 
-    async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
-        """Return the pairs within a distance of the arm at `joints` (n,); raises as `find` does."""
+    async def beside(self, joints: Array, *, within_m: float, occupancy: OccupancyGrid | None) -> tuple[NamePair, ...]:
+        """Return the pairs within a distance of the arm at `joints` (n,), by a map; raises as `find` does."""
         workspace = self._workspace
         report = await workspace.planners.look(
             CollisionRequest(
                 scene=workspace.scene_for(self.arm),
                 arm=self.arm,
                 joints_rad=tuple(float(q) for q in joints),
-                occupancy=workspace.occupancy,
+                occupancy=occupancy,
                 margin_m=within_m,
             )
         )

@@ -27,11 +27,6 @@ class SceneCheck:
         self._workspace = workspace
         self._rule = rule
 
-    @property
-    def unobserved_reason(self) -> str:
-        """Why the scene is not observed; empty if it is."""
-        return self._workspace.unobserved_reason
-
     async def check(self, trajectory: JointTrajectory) -> PathCheck:
         """Return where a trajectory is blocked in the current scene.
 

@@ -23,9 +23,12 @@ from engine.skills.arm_control import (
 )
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.services.arm_status import ArmStatusPublisher
+from robots.port import DelayedSettings
 
 # Longest time a device may take to recover from its reflex, and the polling period.
 _RECOVERY_S, _POLL_S = 1.0, 0.01
+# And to adopt tool and load, which stops and starts the program of some controllers.
+_SETTINGS_S = 10.0
 
 
 class ArmControlServices:
@@ -81,10 +84,14 @@ class ArmControlServices:
                 where=runner.name,
                 hint="set the frame after it has ended",
             )
-        return self._configure(tool_xyz_m=request.xyz_m, tool_xyzw=request.xyzw)
+        settings = self._configure(tool_xyz_m=request.xyz_m, tool_xyzw=request.xyzw)
+        await self._until_applied()
+        return settings
 
     async def _set_load(self, request: SetLoad) -> ControlSettings:
-        return self._configure(load_kg=request.mass_kg, load_com_m=request.com_m)
+        settings = self._configure(load_kg=request.mass_kg, load_com_m=request.com_m)
+        await self._until_applied()
+        return settings
 
     async def _set_collision_behavior(self, request: SetCollisionBehavior) -> ControlSettings:
         return self._configure(collision_torque_nm=request.torque_nm, collision_force_n=request.force_n)
@@ -99,6 +106,19 @@ class ArmControlServices:
         runner.error = ""
         runner.changed()
         return self._report.now()
+
+    async def _until_applied(self) -> None:
+        """Return when the controller has tool and load: it may take its set point anew with them."""
+        runner, port = self._runner, self._runner.port
+        patience_s = runner.clock.now_s() + _SETTINGS_S
+        while isinstance(port, DelayedSettings) and not port.settings_are_applied:
+            if runner.clock.now_s() >= patience_s:
+                raise SkillFailed(
+                    f"the controller did not adopt tool and load within {_SETTINGS_S:g} s",
+                    where=runner.name,
+                    hint="look at the state of the device, and try again",
+                )
+            await runner.clock.sleep(_POLL_S)
 
     async def _until_recovered(self) -> None:
         """Return when the arm reports no reflex; a device may take some time."""

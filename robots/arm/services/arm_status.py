@@ -1,17 +1,19 @@
-"""Serves the status of an arm on request and publishes it on `<arm>/status` at every change."""
+"""The status of an arm, on request and on `<arm>/status` at every change, and its set point on `<arm>/set_point`."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from engine.bus import SkillBus, Topic
+from engine.messages import JointSetPoint
 from engine.skills.arm_control import ArmStatus, ReadArm
 from robots.arm.execution.motion_runner import MotionRunner
+from robots.port.set_point import to_set_point
 from robots.port.wrench import to_wrench
 
 
 class ArmStatusPublisher:
-    """Serves ReadArm and publishes `<arm>/status`."""
+    """Serves ReadArm, publishes `<arm>/status`, and makes the latest `<arm>/set_point` when it is read."""
 
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
@@ -23,6 +25,7 @@ class ArmStatusPublisher:
         name = self._runner.name
         self._topic = bus.topic(f"{name}/status", ArmStatus)
         self._topic.provide(self.now)
+        bus.topic(f"{name}/set_point", JointSetPoint).provide(self._set_point)
         bus.advertise_service(ReadArm, self._read, namespace=name)
         self._runner.changed = self.publish
         self.publish()
@@ -48,6 +51,12 @@ class ArmStatusPublisher:
         if self._topic is not None and key != self._published:
             self._published = key
             self._topic.publish(self.now())
+
+    def _set_point(self) -> JointSetPoint:
+        runner = self._runner
+        if runner.mode == "disconnected":
+            return JointSetPoint(time_s=0.0, names=(), position_rad=())
+        return to_set_point(runner.port.sample(), runner.model.arm_joints)
 
     def _error(self) -> str:
         """Return why the last motion failed, or why the arm stopped by itself."""

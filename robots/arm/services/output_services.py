@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from engine.bus import SkillBus, Topic
-from engine.errors import RobotError
+from engine.document import Cell
+from engine.errors import CellError, RobotError
 from engine.skills.digital_outputs import DigitalOutputs, SetGripper, SetLinearAxis, SetOutput, SetToolExchange
 from engine.skills.switch_result import SwitchResult
-from robots.port import OutputPort
+from robots.port import ConfirmedOutputs, OutputPort
 
 
 class OutputServices:
-    """Serves SetOutput, and SetToolExchange, SetGripper and SetLinearAxis where an output has that use.
+    """Implements `robots.port.SwitchableOutputs`.
+
+    It serves SetOutput, and SetToolExchange, SetGripper and SetLinearAxis where an output has that use.
 
     Args:
         name: The arm's name on the bus.
@@ -40,28 +43,39 @@ class OutputServices:
         if "linear_axis" in uses:
             bus.advertise_service(SetLinearAxis, self._set_linear_axis, namespace=name, commands=name)
 
+    @property
+    def values(self) -> tuple[bool, ...]:
+        """Present values."""
+        return self._port.values
+
+    async def switch(self, output: int, *, on: bool) -> None:
+        """Turn an output on or off, and return when the controller confirms it; raises RobotError."""
+        self._port.set(output, on=on)
+        if isinstance(self._port, ConfirmedOutputs):
+            await self._port.confirmed()
+        self._publish()
+
     async def _set_output(self, request: SetOutput) -> SwitchResult:
-        return self._set(request.output, f"output {request.output}", value=request.value)
+        return await self._set(request.output, f"output {request.output}", value=request.value)
 
     async def _set_tool_exchange(self, request: SetToolExchange) -> SwitchResult:
-        return self._set_use("tool_exchange", value=request.value)
+        return await self._set_use("tool_exchange", value=request.value)
 
     async def _set_gripper(self, request: SetGripper) -> SwitchResult:
-        return self._set_use("gripper", value=request.value)
+        return await self._set_use("gripper", value=request.value)
 
     async def _set_linear_axis(self, request: SetLinearAxis) -> SwitchResult:
-        return self._set_use("linear_axis", value=request.value)
+        return await self._set_use("linear_axis", value=request.value)
 
-    def _set_use(self, use: str, *, value: bool) -> SwitchResult:
+    async def _set_use(self, use: str, *, value: bool) -> SwitchResult:
         output = self._uses[use]
-        return self._set(output, f"{use.replace('_', ' ')} (output {output})", value=value)
+        return await self._set(output, f"{use.replace('_', ' ')} (output {output})", value=value)
 
-    def _set(self, output: int, words: str, *, value: bool) -> SwitchResult:
+    async def _set(self, output: int, words: str, *, value: bool) -> SwitchResult:
         try:
-            self._port.set(output, on=value)
+            await self.switch(output, on=value)
         except RobotError as error:
             return SwitchResult(success=False, message=str(error))
-        self._publish()
         return SwitchResult(success=True, message=f"{words} is {'on' if value else 'off'}")
 
     def _publish(self) -> None:
@@ -70,3 +84,26 @@ class OutputServices:
 
     def _now(self) -> DigitalOutputs:
         return DigitalOutputs(values=self._port.values)
+
+
+def require_outputs(cell: Cell, arm: str, *, count: int, owner: str) -> dict[str, int]:
+    """Return the uses of an arm's outputs, with their numbers.
+
+    Args:
+        cell: The cell.
+        arm: The arm's name in it.
+        count: How many outputs there are.
+        owner: Whose they are, for the message.
+
+    Raises:
+        CellError: the cell names a missing output; with its position.
+    """
+    uses = cell.document.robots[arm].outputs
+    for use, output in uses.items():
+        if output >= count:
+            raise CellError(
+                f"{arm} has no output {output} for {use}",
+                where=cell.source.position(("robots", arm, "outputs", use)),
+                hint=f"{owner} has {f'the outputs 0 to {count - 1}' if count else 'no outputs'}",
+            )
+    return {str(use): output for use, output in uses.items()}

@@ -57,6 +57,13 @@ class ArmKinematics:
         """Return a separate instance with the tool centre point at `tool` in the frame of the tool link."""
         return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
 
+    def tool_link_at_flange(self) -> RigidTransform:
+        """Return the pose of the tool link in the frame of the flange."""
+        frames = self._solver.frames
+        flange = frames[self._solver.getFrameId(self.model.flange_link)].placement
+        placement = flange.actInv(frames[self._tool].placement)
+        return RigidTransform.of(placement.translation, pin.Quaternion(placement.rotation).coeffs())
+
     def mass_matrix(self, joints: Array) -> Array:
         """Return the arm's mass matrix, (n, n), kg m², including motor inertia."""
         return pin.crba(self._solver, self._data, joints) + self._armature

@@ -93,7 +93,12 @@ class LockstepHost:
         # A step that ends within a billionth of a step after `until_s` still belongs to it.
         due = math.inf if math.isinf(until_s) else self._steps_until(until_s)
         while simulation.steps < due:
-            events = simulation.step()
+            try:
+                events = simulation.step()
+            except Exception as error:
+                # For any error: no motion of this world ends any more, and who waits for one would wait for ever.
+                listener.lost(f"the world cannot be stepped: {type(error).__name__}: {error}")
+                raise
             for event in events:
                 listener.happened(event)
             if after_step() or events:

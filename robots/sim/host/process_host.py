@@ -16,10 +16,10 @@ from robots.port import Array
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.loop_heartbeat import LoopHeartbeat
 from robots.port.shared_file import new_shared_file
+from robots.port.shared_numbers import SharedNumbers
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import AnyCommand, RestoreWorld, ShutDownWorld
 from robots.sim.host.loop_timing import SIZE, LoopTiming, decode_timing
-from robots.sim.host.shared_state import SharedNumbers
 from robots.sim.host.world_host import WorldListener
 from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady
 from robots.sim.loop.snapshot import CellSummary, SimSnapshot, SnapshotLayout

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import logging
-import os
 import signal
 import socket
 import sys
@@ -15,39 +14,26 @@ import numpy as np
 
 from engine.errors import CellError
 from engine.stop import StopLine
-from robots.io.message_socket import MessageSocket, PeerGone
+from robots.control.commanding.arm_commands import StopAll
+from robots.io.message_socket import ClosedChannel, MessageSocket, PeerGone
+from robots.io.process_log import log_nonblocking
+from robots.io.real_time_schedule import take_real_time_schedule
 from robots.io.request_failure import RequestFailure
 from robots.port.control_process import EngineMonitor
 from robots.port.heartbeat import Heartbeat
+from robots.port.shared_numbers import SharedNumbers
 from robots.port.stop_monitor import StopMonitor
-from robots.sim.commands.world_commands import RestoreWorld, ShutDownWorld, StopAll
+from robots.sim.commands.world_commands import RestoreWorld, ShutDownWorld
 from robots.sim.host.loop_timing import SIZE, TimingCounter
-from robots.sim.host.process_log import log_nonblocking
-from robots.sim.host.shared_state import SharedNumbers
 from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady, WorldRestored
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 
-_FIFO_PRIORITY = 20
 _SNAPSHOT_EVERY = 2
 _TIMING_EVERY = 50
 # A loop this far behind skips the lost time instead of catching up.
 _LONGEST_LAG_S = 0.05
 _SHUTDOWN_S = 4.0
-
-
-class ClosedChannel:
-    """Replaces the socket once the parent is gone: receives nothing, discards everything."""
-
-    def receive(self) -> list[tuple[int, ToWorld]]:
-        """Return nothing."""
-        return []
-
-    def post(self, message: FromWorld, *, number: int = 0) -> None:
-        """Drop a message."""
-
-    def flush(self) -> None:
-        """Nothing is buffered."""
 
 
 class WorldLoop:
@@ -64,7 +50,7 @@ class WorldLoop:
         timing_fd: int,
     ) -> None:
         self._simulation = simulation
-        self._channel: MessageSocket[ToWorld, FromWorld] | ClosedChannel = channel
+        self._channel: MessageSocket[ToWorld, FromWorld] | ClosedChannel[ToWorld, FromWorld] = channel
         self._engine = engine
         self._stop = stop
         # The measurement, followed by the image, so that both belong to one instant.
@@ -163,15 +149,6 @@ class WorldLoop:
             self._timing.slip(now - due)
             return now + step_s
         return due + step_s
-
-
-def take_real_time_schedule() -> bool:
-    """Request SCHED_FIFO; returns False, and keeps the default schedule, if the system does not permit it."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_FIFO_PRIORITY))
-    except (AttributeError, OSError):
-        return False
-    return True
 
 
 def main() -> None:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import msgspec
 
+from robots.control.commanding.arm_commands import ControlCommand
 from robots.control.motion_event import AnyMotionEvent
 from robots.io.request_failure import RequestFailure
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.arm_commands import SimCommand
 from robots.sim.commands.world_commands import AnyCommand
 from robots.sim.loop.snapshot import CellSummary
 
 
-class BuildWorld(SimCommand, frozen=True, kw_only=True, tag="build"):
+class BuildWorld(ControlCommand, frozen=True, kw_only=True, tag="build"):
     """Request: build the world and step it; always the first message, answered by `WorldReady`."""
 
     scene: SimScene

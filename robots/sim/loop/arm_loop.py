@@ -1,34 +1,16 @@
-"""One arm in the loop of a simulated world: connects the physics to its control loop."""
+"""One arm in the loop of a simulated world: connects the physics to its control loop, or mirrors a real arm."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from robots.control.arm_control_loop import ArmControlLoop
-from robots.control.force.force_tracking import ForceTracking
-from robots.control.generators.guarded_motion import GUARDED_STOP_S, GuardedMotion
-from robots.control.generators.guiding import GuidingGenerator
-from robots.control.generators.joint_jogging import JointJogGenerator
-from robots.control.generators.joint_streaming import JointStreamGenerator
-from robots.control.generators.motion_generator import MotionGenerator
-from robots.control.generators.tool_jogging import ToolJogGenerator
-from robots.control.generators.trajectory_playback import TrajectoryPlayback
+from robots.control.commanding.arm_command_handler import ArmCommandHandler
+from robots.control.commanding.arm_commands import ArmCommand
 from robots.control.motion_event import AnyMotionEvent
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
-from robots.port import Array, SeparationRule, Tolerance
-from robots.sim.commands.arm_commands import (
-    ArmCommand,
-    ConfigureArm,
-    FinishStream,
-    FollowTrajectory,
-    MeasureSeparation,
-    RecoverArm,
-    Setpoint,
-    StartGuiding,
-    StartStream,
-    TrackForce,
-)
+from robots.port import Array, SeparationRule
 from robots.sim.loop.arm_hardware import ArmHardware
 from robots.sim.measures.run_measures import LoopArm
 from robots.sim.physics.cell_model import ArmIndices
@@ -53,13 +35,14 @@ class SimArmLoop:
         hardware: ArmHardware,
         separation: SeparationRule | None = None,
         has_friction: bool,
+        driven: bool = False,
     ) -> None:
         model = indices.model
         self.indices = indices
         self._physics = physics
+        self._is_driven = driven
+        self._mirrored = (physics.positions[indices.qpos], np.zeros(model.dof))
         self._hardware = hardware
-        self._acceleration_rad_s2 = np.array(model.limits.acceleration_rad_s2)
-        self._jerk_rad_s3 = np.array(model.limits.jerk_rad_s3)
         self._tool_link = physics.body_number(f"{indices.name}/{model.tool_link}")
         self._beyond_flange = physics.members(physics.body_number(f"{indices.name}/{model.flange_link}"))
         self._tool_xyz: Array = np.zeros(3)
@@ -72,6 +55,9 @@ class SimArmLoop:
             has_friction=has_friction,
         )
         self.control.initialize(physics.positions[indices.qpos])
+        self._commands = ArmCommandHandler(
+            self.control, model=model, measured_rad=lambda: physics.positions[indices.qpos]
+        )
 
     @property
     def busy(self) -> bool:
@@ -89,38 +75,22 @@ class SimArmLoop:
 
     def take(self, command: ArmCommand) -> None:
         """Apply a command to this arm from the next step on; numbers of other motions are ignored."""
-        control = self.control
-        match command:
-            case FollowTrajectory():
-                control.start(command.motion, self._passage(command), command.tolerance)
-            case TrackForce():
-                model = self.indices.model
-                tracking = ForceTracking(command.task, limits=model.limits, joints=model.arm_joints)
-                control.start(command.motion, tracking, command.tolerance)
-            case StartStream():
-                control.start(command.motion, self._listener(command), Tolerance())
-            case StartGuiding():
-                control.float_with(damping_share=command.damping)
-                guiding = GuidingGenerator(
-                    limits=self.indices.model.limits,
-                    start=control.motion.position,
-                    measured=self._physics.positions[self.indices.qpos],
-                )
-                control.start(command.motion, guiding, Tolerance())
-            case Setpoint():
-                control.motion.receive(command.motion, np.array(command.values), age_s=command.age_s)
-            case FinishStream():
-                control.motion.finish(command.motion)
-            case ConfigureArm():
-                control.configure(command.settings)
-            case RecoverArm():
-                control.recover()
-            case MeasureSeparation():
-                if control.separation is not None:
-                    control.separation.take(command.measured)
+        self._commands.take(command)
+
+    def mirror(self, position_rad: Array, velocity_rad_s: Array) -> None:
+        """Take the measured joints of a driven arm, (n,)."""
+        self._mirrored = (position_rad, velocity_rad_s)
+
+    def place(self) -> None:
+        """Place a driven arm where it is measured; before the physics of a step."""
+        if self._is_driven:
+            physics, indices = self._physics, self.indices
+            physics.positions[indices.qpos], physics.velocities[indices.dof] = self._mirrored
 
     def measured_joints(self, step: int) -> tuple[Array, Array]:
         """Return the measured joint positions and velocities, (n,), before this step."""
+        if self._is_driven:
+            return self._mirrored
         physics, indices = self._physics, self.indices
         return self._hardware.joints(physics.positions[indices.qpos], physics.velocities[indices.dof], step=step)
 
@@ -133,6 +103,10 @@ class SimArmLoop:
         physics, control = self._physics, self.control
         self._tool_xyz = physics.point_of(self._tool_link, control.tool_xyz_m)
         position, velocity = self.measured_joints(step)
+        if self._is_driven:
+            control.state.refill(position, velocity)
+            control.motion.position[:] = position
+            return []
         wrench = self._hardware.wrench(
             physics.wrench_on(self._beyond_flange, self._tool_xyz), axes=physics.axes_of(self._tool_link), step=step
         )
@@ -140,7 +114,9 @@ class SimArmLoop:
         return control.advance(step_s)
 
     def drive(self, *, step_s: float) -> None:
-        """Set the motors."""
+        """Set the motors; a driven arm has none here."""
+        if self._is_driven:
+            return
         self._physics.motors[self.indices.motor] = self._hardware.drive(self.control.torque(step_s=step_s))
 
     def rest_near(self, set_point: Array, *, reflex: bool) -> None:
@@ -149,24 +125,3 @@ class SimArmLoop:
         measured = self._physics.positions[self.indices.qpos]
         near = np.clip(set_point, measured - _NEAR_RAD, measured + _NEAR_RAD)
         self.control.initialize(near, reflex=reflex)
-
-    def _passage(self, command: FollowTrajectory) -> MotionGenerator:
-        trajectory, limits, jerk = command.trajectory, self._acceleration_rad_s2, self._jerk_rad_s3
-        if command.until is None:
-            return TrajectoryPlayback(trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk)
-        inner = TrajectoryPlayback(
-            trajectory, acceleration_rad_s2=limits, jerk_rad_s3=jerk, shortest_stop_s=GUARDED_STOP_S
-        )
-        return GuardedMotion(inner, command.until)
-
-    def _listener(self, command: StartStream) -> MotionGenerator:
-        model, start = self.indices.model, self.control.motion.position
-        match command.kind:
-            case "joint_position":
-                return JointStreamGenerator(
-                    limits=model.limits, joints=model.arm_joints, start=start, watchdog_s=command.watchdog_s
-                )
-            case "joint_velocity":
-                return JointJogGenerator(limits=model.limits, start=start, watchdog_s=command.watchdog_s)
-            case "tool_twist":
-                return ToolJogGenerator(limits=model.limits, start=start, watchdog_s=command.watchdog_s)

@@ -5,30 +5,29 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_control_loop import ArmControlLoop
+from robots.control.commanding.arm_commands import CancelMotion, CommandToArm, HoldMotion, ResumeMotion, StopAll
 from robots.control.motion_event import AnyMotionEvent
 from robots.control.motion_executor import MotionExecutor
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.scene.realism import realism
-from robots.sim.commands.arm_commands import CommandToArm
 from robots.sim.commands.world_commands import (
     AnyCommand,
-    CancelMotion,
-    HoldMotion,
+    MirrorArm,
+    MirrorTool,
     MovePersonHand,
     MoveTool,
     PushSimBody,
     ResetFreeParts,
     RestoreWorld,
-    ResumeMotion,
     ShutDownWorld,
-    StopAll,
 )
 from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.external_pushes import ExternalPushes
+from robots.sim.loop.held_parts import HeldParts
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
 from robots.sim.loop.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
 from robots.sim.measures.run_measures import RunMeasures
@@ -58,6 +57,7 @@ class Simulation:
         self._set_home()
         self._contacts = ContactReader(cell, physics)
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
+        driven = {placement.name for placement in cell.scene.arms if placement.driven}
         self._arms = {
             arm.name: SimArmLoop(
                 arm,
@@ -73,10 +73,12 @@ class Simulation:
                 ),
                 separation=cell.scene.separation,
                 has_friction=realism(cell.scene.realism).coulomb_share > 0.0,
+                driven=arm.name in driven,
             )
             for arm in cell.arms
         }
         self._hands = ExternalPushes(physics)
+        self._held_parts = HeldParts(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, ToolMechanics] = {name: tool for name, tool in tools.items() if tool is not None}
@@ -90,7 +92,9 @@ class Simulation:
         """What the world sums up while it runs."""
         arms = _arm_summaries(cell)
         self._tool_names = {arm.name: f"{arm.name}/{arm.tool.kind}" for arm in arms if arm.tool is not None}
-        self._arm_dof = np.concatenate([np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms)])
+        self._arm_dof = np.concatenate(
+            [np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms if arm.name not in driven)]
+        )
         self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
         self.summary = _summary(cell, arms, image_size=self.image_layout.size)
         self.layout = SnapshotLayout(self.summary)
@@ -132,6 +136,8 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
+            case MirrorArm() | MirrorTool():
+                self._mirror(command)
             case HoldMotion():
                 for device in self._devices():
                     device.hold(command.motion, request=command.request)
@@ -154,10 +160,20 @@ class Simulation:
                 for device in self._devices():
                     device.stop()
 
+    def _mirror(self, command: MirrorArm | MirrorTool) -> None:
+        match command:
+            case MirrorArm():
+                self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
+            case MirrorTool():
+                self._held_parts.report(command.arm, held=command.held)
+
     def step(self) -> list[AnyMotionEvent]:
         """Simulate one step and return the motion events."""
         events: list[AnyMotionEvent] = []
         self._people.place()
+        for arm in self._arms.values():
+            arm.place()
+        self._held_parts.place()
         self._physics.start_step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
@@ -177,6 +193,7 @@ class Simulation:
         values[layout.time] = self.time_s
         for name, arm in self._arms.items():
             self._write_arm(values, layout.arms[name], arm)
+            values[layout.arms[name].held] = self._held_parts.number(name)
             if name in self._tools:
                 tool = self._tools[name]
                 values[layout.arms[name].tool] = (tool.drive.number, *tool.measured())
@@ -205,6 +222,7 @@ class Simulation:
         self.steps = int(image[layout.steps])
         self._hands.let_go()
         self._physics.rest_at(image[layout.physics])
+        self._held_parts.restart()
         for name, arm in self._arms.items():
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
         for name, tool in self._tools.items():

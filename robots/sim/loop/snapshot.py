@@ -47,7 +47,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
 class ArmFields:
     """Positions of one arm's numbers: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` has six.
 
-    `separation` has the three numbers of `PermittedSpeed`.
+    `separation` has the three numbers of `PermittedSpeed`, `held` the part that follows a driven tool, -1 for none.
     """
 
     number: int
@@ -58,6 +58,7 @@ class ArmFields:
     joints: slice
     dof: int
     tool: slice
+    held: int
 
 
 class SnapshotLayout:
@@ -79,6 +80,7 @@ class SnapshotLayout:
             wrench = slice(separation.stop, separation.stop + 6)
             joints = slice(wrench.stop, wrench.stop + 5 * n)
             tool = slice(joints.stop, joints.stop + (_TOOL_FIELDS + arm.tool.contacts if arm.tool else 0))
+            held = tool.stop
             arms[arm.name] = ArmFields(
                 number=at,
                 progress=at + 1,
@@ -88,8 +90,9 @@ class SnapshotLayout:
                 joints=joints,
                 dof=n,
                 tool=tool,
+                held=held,
             )
-            at = tool.stop
+            at = held + 1
         self.arms = arms
         frames = len(summary.frames)
         self.positions = slice(at, at + 3 * frames)
@@ -153,6 +156,11 @@ class SimSnapshot:
         _, _, a, b, c, *touched = self._values[self._layout.arms[name].tool].tolist()
         contacts = tuple(self._body(body) for body in touched)
         return ToolReading(time_s=self.time_s, values=(a, b, c), contacts=contacts)
+
+    def held_part(self, name: str) -> str:
+        """Return the part that follows the driven tool of an arm; empty for none."""
+        number = int(self._values[self._layout.arms[name].held])
+        return self._layout.summary.parts[number] if number >= 0 else ""
 
     def person(self, name: str) -> PersonSample:
         """Motion and contacts of one person."""

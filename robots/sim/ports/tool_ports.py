@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Protocol, cast
 
 from engine.errors import CellError, RobotError
+from robots.control.commanding.exclusive_motion import ExclusiveMotion
+from robots.control.commanding.motion_registry import CommandedMotion, MotionRegistry
 from robots.sim.commands.world_commands import MoveTool
 from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import ArmSummary
-from robots.sim.ports.exclusive_motion import ExclusiveMotion
-from robots.sim.ports.motion_registry import MotionRegistry, SimMotion
 from robots.tool_kinds import load_simulation
 
 
@@ -35,11 +36,12 @@ class ToolLine:
         """Return the latest measurement."""
         return self.host.snapshot().tool(self.arm)
 
-    def start(self, number: int, goal: tuple[float, ...]) -> SimMotion:
+    def start(self, number: int, goal: tuple[float, ...]) -> CommandedMotion:
         """Send the command that starts motion `number` towards a goal."""
         host, arm = self.host, self.arm
-        motion = SimMotion(number, send=host.send, progress=lambda: host.snapshot().tool_progress(arm, number))
-        return self._one.start(motion, host, MoveTool(arm=arm, motion=number, goal=goal))
+        motion = CommandedMotion(number, send=host.send, progress=lambda: host.snapshot().tool_progress(arm, number))
+        command = MoveTool(arm=arm, motion=number, goal=goal)
+        return self._one.start(motion, partial(host.send, command))
 
     def require(self, what: str, value: float, *, above_zero: bool) -> None:
         """Raise RobotError unless `value` is finite and at least 0, or above 0 with `above_zero`."""

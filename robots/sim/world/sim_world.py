@@ -6,6 +6,7 @@ import asyncio
 import math
 from collections.abc import Callable
 from contextlib import AsyncExitStack
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Self, cast
@@ -16,9 +17,11 @@ from engine.errors import RobotError, SkillFailed
 from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
 from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResult, ResetParts, ResetPartsResult
-from robots.port import ArmPort, GripperPort, HandPort
+from robots.control.commanding.arm_commands import StopAll
+from robots.control.commanding.motion_registry import MotionRegistry
+from robots.port import ArmPort, Array, GripperPort, HandPort
 from robots.scene.sim_scene import ArmPlacement, SimScene
-from robots.sim.commands.world_commands import PushSimBody, StopAll
+from robots.sim.commands.world_commands import MirrorArm, PushSimBody
 from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.host.lockstep_host import LockstepHost
@@ -26,10 +29,10 @@ from robots.sim.host.process_host import NewStopLine, ProcessHost
 from robots.sim.host.world_host import StepHook, WorldHost
 from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
 from robots.sim.physics.scene_description import describe_scene
-from robots.sim.ports.motion_registry import MotionRegistry
+from robots.sim.ports.arm_ports import arm_ports, output_ports
 from robots.sim.ports.sim_outputs import SimOutputPort
-from robots.sim.ports.sim_ports import SimArmPort
 from robots.sim.ports.tool_ports import ToolPorts
+from robots.sim.world.driven_tools import mirror_driven_tools
 from robots.sim.world.person_services import PersonServices
 from robots.sim.world.sim_robot import SimRobot, StatefulDevice, WorldDependentDevice
 from robots.sim.world.snapshot_codec import WorldImage, decode_snapshot, encode_snapshot
@@ -62,16 +65,9 @@ class SimWorld:
         self._cache = cache
         self._board = MotionRegistry(on_lost=self._lost)
         self._arms = {placement.name: _summary(placement) for placement in scene.arms}
-        self._arm_ports = {
-            placement.name: SimArmPort(host, self._board, self._arms[placement.name], placement.robot().limits)
-            for placement in scene.arms
-        }
+        self._arm_ports = arm_ports(scene, host, self._board)
         self._tools = ToolPorts(host, self._board, self._arms)
-        self._outputs = {
-            placement.name: SimOutputPort(placement.name, count=count)
-            for placement in scene.arms
-            if (count := placement.robot().digital_outputs)
-        }
+        self._outputs = output_ports(scene)
         self._status = DeviceStatus.DISCONNECTED
         self._at_loss = b""
         self._connection_changed: Callable[[], None] = _nothing
@@ -127,6 +123,11 @@ class SimWorld:
     def arm(self, name: str) -> ArmPort:
         """Return the port of one arm."""
         return self._arm_ports[name]
+
+    def mirror(self, name: str, position_rad: Array, velocity_rad_s: Array) -> None:
+        """Place the body of a driven arm where its driver measures it; nothing happens while the world is lost."""
+        if self._status is DeviceStatus.READY:
+            self._host.send(MirrorArm(arm=name, position_rad=position_rad, velocity_rad_s=velocity_rad_s))
 
     def gripper(self, name: str) -> GripperPort:
         """Return the port of the gripper on one arm."""
@@ -262,13 +263,10 @@ class SimWorld:
 
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
-        self._publisher = WorldPublisher(
-            bus,
-            self._host,
-            lambda: describe_scene(self._scene, cache=self._cache),
-            scene=self._scene,
-        )
+        describe = partial(describe_scene, self._scene, cache=self._cache)
+        self._publisher = WorldPublisher(bus, self._host, describe, scene=self._scene)
         self._bus = bus
+        mirror_driven_tools(bus, self._host, self._scene)
         bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
         bus.advertise_service(PushBody, self._push_body, namespace=self.name)
         self.people.register(bus)

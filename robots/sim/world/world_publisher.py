@@ -40,7 +40,9 @@ class WorldPublisher:
         self._frames = summary.frames
         self._parts = frozenset(summary.parts)
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
-        arms = tuple(topic for arm in summary.arms for topic in arm_topics(bus, host, arm, joint_maps[arm.name]))
+        real = {placement.name for placement in scene.arms if placement.driven}
+        simulated_arms = [arm for arm in summary.arms if arm.name not in real]
+        arms = tuple(topic for arm in simulated_arms for topic in arm_topics(bus, host, arm, joint_maps[arm.name]))
         driven = {placement.name for placement in scene.arms if placement.driven_tool}
         simulated = [arm for arm in summary.arms if arm.name not in driven]
         topics = (tool_topic(bus, host, arm, parts=self._parts) for arm in simulated)

@@ -56,10 +56,15 @@ class Served:
 
 
 @asynccontextmanager
-async def served(*, outputs: OutputServices | None = None, model: RobotModel | None = None) -> AsyncGenerator[Served]:
+async def served(
+    *,
+    outputs: OutputServices | None = None,
+    model: RobotModel | None = None,
+    port_type: type[FakeArmPort] = FakeArmPort,
+) -> AsyncGenerator[Served]:
     """The left arm, a Panda unless said otherwise, connected and on a bus."""
     model = model or panda_model()
-    port = FakeArmPort(model.arm_joints, np.array(model.home_rad))
+    port = port_type(model.arm_joints, np.array(model.home_rad))
     arm = ArmServer(
         name="left",
         model=model,

@@ -10,19 +10,21 @@ import numpy as np
 from engine.skills.dmp import Compliance
 from engine.skills.simulated_world import PushBody
 from robots.control.arm_control_loop import ArmControlLoop
-from robots.control.motion_event import MotionFinished, MotionHeld
-from robots.model.robot_model import RobotModel
-from robots.motion import plan_joints
-from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
-from robots.sim.commands.arm_commands import (
+from robots.control.commanding.arm_commands import (
+    CancelMotion,
     FinishStream,
     FollowTrajectory,
+    HoldMotion,
     Setpoint,
     StartGuiding,
     StartStream,
     TrackForce,
 )
-from robots.sim.commands.world_commands import CancelMotion, HoldMotion, PushSimBody
+from robots.control.motion_event import MotionFinished, MotionHeld
+from robots.model.robot_model import RobotModel
+from robots.motion import plan_joints
+from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
+from robots.sim.commands.world_commands import PushSimBody
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import CellModel
 

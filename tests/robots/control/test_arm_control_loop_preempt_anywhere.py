@@ -12,9 +12,9 @@ import pytest
 
 from engine.skills.arm_control import ControlSettings
 from engine.skills.simulated_world import PushBody
+from robots.control.commanding.arm_commands import ConfigureArm, RecoverArm
 from robots.port import MotionEnd
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.arm_commands import ConfigureArm, RecoverArm
 from robots.sim.commands.world_commands import PushSimBody
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.control.arm_orders import STARTS, Start, WatchedArm, follow, stop

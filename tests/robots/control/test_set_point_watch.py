@@ -67,6 +67,72 @@ def test_a_jump_says_which_joint_exceeds_which_limit_when_and_between_which_gene
 
 
 @pytest.mark.jumps
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_set_point_may_be_at_a_limit_of_its_joint_and_not_beyond(sign: float) -> None:
+    watch, point = watched()
+    point.position = np.array([0.0, sign * 2.0])
+    watch.restart(point.position)
+    point.position = point.position + np.array([0.0, sign * 1e-6])
+    assert watch.look(STEP_S, point) is None
+    point.position = point.position + np.array([0.0, sign * 2e-6])
+    jump = watch.look(STEP_S, point)
+    assert jump is not None
+    assert jump.quantity == "position"
+
+
+def test_a_set_point_that_starts_anew_has_only_the_velocity_that_it_is_given() -> None:
+    watch, point = watched()
+    watch.restart(point.position, np.ones(2))
+    watch.restart(point.position)
+    assert watch.look(STEP_S, point) is None
+    watch.restart(point.position, np.ones(2))
+    point.position = point.position + STEP_S
+    assert watch.look(STEP_S, point) is None
+
+
+@pytest.mark.jumps
+@pytest.mark.parametrize(("periods", "count"), [(1, 1), (6, 1), (7, 2)])
+def test_a_second_jump_counts_when_the_first_one_is_past(periods: int, count: int) -> None:
+    watch, point = watched()
+    for period in range(periods + 1):
+        if period in (0, periods):
+            point.position = point.position + 0.01
+        watch.look(STEP_S, point)
+    assert watch.count == count
+
+
+@pytest.mark.jumps
+def test_a_jump_that_is_not_sent_leaves_the_past_as_it_was() -> None:
+    watch, point = watched()
+    point.position[1] = 0.01
+    assert watch.look(STEP_S, point) is not None
+    assert not watch.reject().any()
+    point.position[1] = 0.0
+    assert watch.look(STEP_S, point) is None
+    point.position[1] = 0.01
+    again = watch.look(STEP_S, point)
+    assert again is not None
+    assert "jumped at 0.003 s" in again.reason
+    assert watch.count == 2
+
+
+@pytest.mark.jumps
+def test_a_jump_after_a_change_of_generators_names_both_for_four_periods() -> None:
+    named: list[str] = []
+    for periods in range(6):
+        watch, point = watched()
+        point.generator_name = "trajectory"
+        for _ in range(periods):
+            assert watch.look(STEP_S, point) is None
+        point.position[1] = 0.01
+        jump = watch.look(STEP_S, point)
+        assert jump is not None
+        assert jump.ratio == pytest.approx(10.0 / 2.002)
+        named.append(jump.before)
+    assert named == ["rest"] * 4 + ["trajectory"] * 2
+
+
+@pytest.mark.jumps
 def test_one_jump_is_reported_once_and_the_next_one_again(caplog: pytest.LogCaptureFixture) -> None:
     watch, point = watched()
     for jump in (0.01, 0.01):

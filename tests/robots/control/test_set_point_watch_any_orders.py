@@ -16,12 +16,12 @@ from hypothesis import strategies as st
 
 from engine.skills.arm_control import ControlSettings
 from engine.skills.simulated_world import PushBody
+from robots.control.commanding.arm_commands import ConfigureArm, HoldMotion, RecoverArm, ResumeMotion, StopAll
 from robots.model.registry import model_by_name
 from robots.model.robot_model import RobotModel
 from robots.port import JointTrajectory, MotionEnd
 from robots.scene.sim_scene import ArmPlacement, SimScene
-from robots.sim.commands.arm_commands import ConfigureArm, RecoverArm
-from robots.sim.commands.world_commands import HoldMotion, PushSimBody, ResumeMotion, StopAll
+from robots.sim.commands.world_commands import PushSimBody
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.control.arm_orders import STARTS, WatchedArm, stop
 from tests.robots.sim.sim_cell import ABOVE_PART, LEFT, one_arm

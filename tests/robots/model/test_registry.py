@@ -21,7 +21,7 @@ ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def test_the_arms_and_tools_of_the_documents_are_there() -> None:
-    assert robot_names() == ("irb4600", "panda", "servo_arm", "ur10")
+    assert robot_names() == ("fr3", "irb4600", "panda", "servo_arm", "ur10")
     assert tool_names() == ("magnet", "panda_hand", "robotiq_2f85", "servo_claw", "softhand")
 
 

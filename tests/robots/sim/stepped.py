@@ -9,9 +9,9 @@ import numpy as np
 from engine.messages import Vector3
 from engine.skills.arm_control import ControlSettings
 from engine.skills.simulated_world import PushBody
+from robots.control.commanding.arm_commands import ConfigureArm, FollowTrajectory
 from robots.control.motion_event import AnyMotionEvent, MotionFinished
 from robots.port import ArmSample, Array, MotionReport, Tolerance
-from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory
 from robots.sim.commands.world_commands import AnyCommand, PushSimBody
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from msgspec.structs import replace
 
 from engine.bus import GoalHandle, SkillBus
@@ -28,6 +29,7 @@ from engine.skills.planning import (
     PlanOptions,
 )
 from engine.skills.planning_scene import PutObstacle, RemoveObstacle
+from robots.planning.request import PathCheck, PathCheckRequest
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.port import Array
 from robots.sim.host.lockstep_host import LockstepHost
@@ -176,6 +178,20 @@ async def free_cell(
     patient_cell = dataclasses.replace(loaded, document=document)
     async with OpenCell(patient_cell, store_path=str(folder / "store.db")) as opened:
         yield FreeCell(opened)
+
+
+def put_after_the_check(opened: FreeCell, obstacle: Obstacle, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Put an obstacle when the path of the next motion has been checked, before the motion has begun."""
+    planners = opened.workspace.planners
+    check = planners.check_path
+
+    async def check_then_put(request: PathCheckRequest) -> PathCheck:
+        answer = await check(request)
+        monkeypatch.setattr(planners, "check_path", check)
+        await opened.put(obstacle)
+        return answer
+
+    monkeypatch.setattr(planners, "check_path", check_then_put)
 
 
 class Witness:

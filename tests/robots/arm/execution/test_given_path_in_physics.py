@@ -23,7 +23,16 @@ from engine.skills.motion import CartLinTask, CartTrapVel, JointTrapVel
 from engine.skills.waypoints import FollowWaypoints, Waypoint
 from tests.robots.arm.every_skill import cart_dmp, joint_dmp
 from tests.robots.panda_arm import panda_kinematics
-from tests.robots.workspace.free_cell import ACROSS, REST_RAD_S, THERE, FreeCell, Witness, box, free_cell
+from tests.robots.workspace.free_cell import (
+    ACROSS,
+    REST_RAD_S,
+    THERE,
+    FreeCell,
+    Witness,
+    box,
+    free_cell,
+    put_after_the_check,
+)
 from tests.tiers import nightly
 
 CELL = Path(__file__).parents[1] / "one_panda.yaml"
@@ -180,6 +189,18 @@ async def test_what_gets_into_the_path_of_a_moving_arm_stops_it_in_time_and_ends
         why = describe_cause(end.cause) if end.cause else ""
         assert (end.status, witness.touched, "would touch wall" in why) == (GoalStatus.ABORTED, set(), True), why
         assert opened.speed_rad_s() < REST_RAD_S
+        assert opened.joints()[0] > 0.1
+
+
+@pytest.mark.virtual
+async def test_what_gets_into_the_path_between_its_check_and_the_start_is_noticed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with free_cell(tmp_path, cell=CELL) as opened:
+        await go(opened, THERE)
+        put_after_the_check(opened, WALL, monkeypatch)
+        end, why, touched = await end_of(opened, SWEEP)
+        assert (end.status, touched, "would touch wall" in why) == (GoalStatus.ABORTED, set(), True), why
         assert opened.joints()[0] > 0.1
 
 

@@ -24,6 +24,7 @@ from tests.robots.workspace.free_cell import (
     box,
     free,
     free_cell,
+    put_after_the_check,
 )
 from tests.tiers import nightly
 
@@ -37,6 +38,19 @@ async def test_an_arm_reaches_its_goal_and_says_what_that_took(tmp_path: Path) -
         result = await opened.go(THERE)
         assert np.abs(np.array(result.joints) - THERE).max() < 0.005
         assert (result.stops, result.replans, result.reused, result.waited_s, result.blocked) == (0, 0, 0, 0.0, "")
+
+
+@pytest.mark.virtual
+async def test_what_gets_into_the_path_between_its_check_and_the_start_is_noticed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with free_cell(tmp_path) as opened:
+        await opened.go(THERE)
+        witness = Witness(opened, POST)
+        put_after_the_check(opened, POST, monkeypatch)
+        result = await opened.go(ACROSS)
+        await witness.end()
+        assert (result.stops, witness.touched) == (1, set())
 
 
 @pytest.mark.virtual

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
 
 import msgspec
@@ -28,6 +29,7 @@ from engine.skills.arm_control import (
 )
 from engine.skills.motion import CartTrapVel, ForwardKinematics
 from tests.robots.arm.served import HOME, MOVE, served
+from tests.robots.fake_port import FakeArmPort
 
 SETTINGS: list[tuple[Service[ControlSettings], ControlSettings]] = [
     (SetController(controller="cartesian_impedance"), ControlSettings(controller="cartesian_impedance")),
@@ -186,3 +188,29 @@ async def test_a_reflex_of_an_idle_arm_is_reported_at_once_with_its_reason_until
         assert rejected.cause is not None
         assert "stopped by itself: panda_joint2 feels 31 Nm" in rejected.cause.message
         assert (await cell.bus.call(RecoverFromError(), to="left")).error == ""
+
+
+class SlowController(FakeArmPort):
+    """A port whose controller adopts tool and load when the test says so."""
+
+    settings_are_applied = False
+
+
+@pytest.mark.virtual
+async def test_a_load_is_set_when_the_controller_has_adopted_it() -> None:
+    """It may take its set point anew with it, from which the next motion is planned."""
+    async with served(port_type=SlowController) as cell:
+        port = cell.port
+        assert isinstance(port, SlowController)
+        setting = asyncio.ensure_future(cell.bus.call(SetLoad(mass_kg=1.0), to="left"))
+        await cell.bus.clock.sleep(2.0)
+        assert (setting.done(), port.settings.load_kg) == (False, 1.0)
+        port.settings_are_applied = True
+        assert (await setting).load_kg == 1.0
+
+
+@pytest.mark.virtual
+async def test_a_controller_that_does_not_adopt_its_tool_is_the_cause() -> None:
+    async with served(port_type=SlowController) as cell:
+        with pytest.raises(SkillFailed, match="did not adopt tool and load within 10 s"):
+            await cell.bus.call(SetEndEffectorFrame(xyz_m=(0.0, 0.0, 0.1)), to="left")

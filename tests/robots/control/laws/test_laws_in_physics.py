@@ -11,12 +11,12 @@ import pytest
 from msgspec.structs import replace
 
 from engine.skills.arm_control import ControlSettings
+from robots.control.commanding.arm_commands import FinishStream, FollowTrajectory, StartGuiding
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.motion import plan_line
 from robots.port import MotionEnd, Tolerance
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.arm_commands import FinishStream, FollowTrajectory, StartGuiding
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, LEFT, LIFTED, PANDA, one_arm

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -40,6 +42,24 @@ def test_a_faster_arm_takes_longer_to_stop_and_one_at_rest_no_time() -> None:
     times_s = STOPS.time_s(np.array(LIMITS.velocity_rad_s), np.linspace(0.0, 1.0, 11))
     assert times_s[0] == 0.0
     assert (np.diff(times_s) > 0.0).all()
+
+
+@pytest.mark.parametrize("speed_rad_s", [0.2, 2.0])
+def test_a_stop_takes_as_long_as_its_deceleration_needs_to_lose_the_speed(speed_rad_s: float) -> None:
+    """It rises with 85 % of the jerk limit to at most 90 % of the acceleration limit, and fades half as fast."""
+    limits = dataclasses.replace(
+        LIMITS,
+        lower_rad=(-3.0,),
+        upper_rad=(3.0,),
+        velocity_rad_s=(2.0,),
+        acceleration_rad_s2=(4.0,),
+        jerk_rad_s3=(40.0,),
+    )
+    time_s = float(StopModel(limits).time_s(np.array([speed_rad_s]), np.array([1.0]))[0])
+    stop_s, rise, fade = (time_s - 0.02) / 1.35, 0.85 * 40.0, 0.5 * 0.85 * 40.0
+    t = np.linspace(0.0, stop_s, 20001)
+    deceleration = np.minimum(np.minimum(rise * t, fade * (stop_s - t)), 0.9 * 4.0)
+    assert float(np.trapezoid(deceleration, t)) == pytest.approx(speed_rad_s, rel=1e-3)
 
 
 def _bent(first: Array, second: Array, third: Array) -> JointTrajectory:

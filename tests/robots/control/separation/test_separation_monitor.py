@@ -8,15 +8,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from robots.control.motion_event import SetPointJumped
-from robots.port import ContactCondition, MeasuredSeparation, MotionEnd, PermittedSpeed, SeparationRule, Tolerance
-from robots.sim.commands.arm_commands import (
+from robots.control.commanding.arm_commands import (
     FollowTrajectory,
     MeasureSeparation,
     Setpoint,
     StartGuiding,
     StartStream,
 )
+from robots.control.motion_event import SetPointJumped
+from robots.port import ContactCondition, MeasuredSeparation, MotionEnd, PermittedSpeed, SeparationRule, Tolerance
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import CellModel, build_cell
 from robots.workspace.separation_measurement import link_extents_m

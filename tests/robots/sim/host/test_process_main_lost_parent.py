@@ -14,13 +14,13 @@ import msgspec
 import pytest
 
 from engine.host.child_process import start_child
+from robots.control.commanding.arm_commands import FollowTrajectory
 from robots.io.framing import frame_payload
 from robots.io.message_codec import encode_payload
 from robots.io.message_socket import MessageSocket
 from robots.port import Tolerance
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.shared_file import new_shared_file
-from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady
 from tests.robots.sim.sim_cell import HOME, one_arm, smooth
 

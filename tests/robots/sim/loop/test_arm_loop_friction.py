@@ -7,8 +7,8 @@ import pytest
 
 from engine.document import RealismName
 from engine.skills.arm_control import ControlSettings
+from robots.control.commanding.arm_commands import FinishStream, StartGuiding
 from robots.port import Array, MotionEnd
-from robots.sim.commands.arm_commands import FinishStream, StartGuiding
 from robots.sim.physics.cell_model import build_cell
 from tests.robots.sim.realistic import realistic
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, LIFTED, one_arm

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from robots.control.commanding.arm_commands import CancelMotion, FollowTrajectory
 from robots.port import Tolerance
-from robots.sim.commands.arm_commands import FollowTrajectory
-from robots.sim.commands.world_commands import CancelMotion
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import build_cell

@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from robots.control.commanding.arm_commands import FollowTrajectory
 from robots.port import Array, JointTrajectory, Tolerance
 from robots.scene.sim_scene import PersonBody
-from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.commands.world_commands import RestoreWorld
 from robots.sim.people.limb_yielding import GREATEST_PUSH_N
 from robots.sim.physics.cell_model import CellModel, build_cell

@@ -1,4 +1,4 @@
-"""Commands to one arm of a simulation, as messages that can also be sent to its own process."""
+"""Commands to the control loop of an arm, as messages that can also be sent to its own process."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from engine.skills.arm_control import ControlSettings
 from robots.port import ContactCondition, ForceTask, JointTrajectory, MeasuredSeparation, StreamKind, Tolerance
 
 
-class SimCommand(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
+class ControlCommand(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
     """Base of the commands; the sender numbers motions from 1, each number once."""
 
 
-class CommandToArm(SimCommand, frozen=True, kw_only=True):
+class CommandToArm(ControlCommand, frozen=True, kw_only=True):
     """Base of the commands to one arm."""
 
     arm: str
@@ -80,6 +80,30 @@ class RecoverArm(CommandToArm, frozen=True, kw_only=True, tag="recover"):
     """End a reflex stop."""
 
 
+class HoldMotion(ControlCommand, frozen=True, kw_only=True, tag="hold"):
+    """Bring a motion to rest on its path; a motion's holds and resumes are numbered from 1 by the sender."""
+
+    motion: int
+    request: int
+
+
+class ResumeMotion(ControlCommand, frozen=True, kw_only=True, tag="resume"):
+    """Resume a held motion."""
+
+    motion: int
+    request: int
+
+
+class CancelMotion(ControlCommand, frozen=True, kw_only=True, tag="cancel"):
+    """Bring a motion to rest and end it."""
+
+    motion: int
+
+
+class StopAll(ControlCommand, frozen=True, kw_only=True, tag="stop_all"):
+    """Cancel every motion."""
+
+
 ArmCommand = (
     FollowTrajectory
     | TrackForce
@@ -91,3 +115,7 @@ ArmCommand = (
     | RecoverArm
     | MeasureSeparation
 )
+"""What the control loop of an arm takes."""
+
+MotionCommand = HoldMotion | ResumeMotion | CancelMotion | StopAll
+"""About motions of any device, by their numbers."""

@@ -7,8 +7,8 @@ import asyncio
 import numpy as np
 import pytest
 
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.port import MotionEnd, Tolerance
-from robots.sim.ports.motion_registry import SimMotion
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, both_hosts_nightly, one_arm, opened, smooth, unhurried, until
 from tests.tiers import nightly
@@ -20,11 +20,11 @@ REST_RAD_S = 0.02
 OFF_PATH_RAD = 0.004
 
 
-def start(world: SimWorld, host: str = "lockstep") -> SimMotion:
+def start(world: SimWorld, host: str = "lockstep") -> CommandedMotion:
     """Send the arm to the goal."""
     way = smooth(HOME, GOAL, unhurried(host, DURATION_S))
     motion = world.arm("left").follow(way, tolerance=Tolerance())
-    assert isinstance(motion, SimMotion)
+    assert isinstance(motion, CommandedMotion)
     return motion
 
 
@@ -40,7 +40,7 @@ def off_path_rad(world: SimWorld) -> float:
     return float(np.abs(off - along * (off @ along)).max())
 
 
-async def watch_path(world: SimWorld, motion: SimMotion) -> float:
+async def watch_path(world: SimWorld, motion: CommandedMotion) -> float:
     """Return the greatest distance from the path that was measured until the motion ended."""
     worst = 0.0
 
@@ -53,7 +53,7 @@ async def watch_path(world: SimWorld, motion: SimMotion) -> float:
     return worst
 
 
-async def check_arrived(world: SimWorld, motion: SimMotion) -> None:
+async def check_arrived(world: SimWorld, motion: CommandedMotion) -> None:
     """The motion ends where it would have ended without all that."""
     assert (await motion.report()).end is MotionEnd.REACHED
     assert motion.progress == 1.0

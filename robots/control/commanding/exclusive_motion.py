@@ -1,11 +1,11 @@
-"""Limits the port of a simulated device to one motion at a time."""
+"""Limits the port of a device to one motion at a time."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from engine.errors import RobotError
-from robots.sim.commands.world_commands import AnyCommand
-from robots.sim.host.world_host import WorldHost
-from robots.sim.ports.motion_registry import MotionRegistry, SimMotion
+from robots.control.commanding.motion_registry import CommandedMotion, MotionRegistry
 
 
 class ExclusiveMotion:
@@ -14,7 +14,7 @@ class ExclusiveMotion:
     def __init__(self, device: str, board: MotionRegistry) -> None:
         self._device = device
         self._board = board
-        self._motion: SimMotion | None = None
+        self._motion: CommandedMotion | None = None
 
     def number(self) -> int:
         """Return the number for the next motion; raises RobotError while one is active."""
@@ -24,9 +24,9 @@ class ExclusiveMotion:
             )
         return self._board.next_number()
 
-    def start(self, motion: SimMotion, host: WorldHost, command: AnyCommand) -> SimMotion:
-        """Send the command and keep the motion; a motion that could not be sent is not active."""
-        host.send(command)
+    def start(self, motion: CommandedMotion, send: Callable[[], None]) -> CommandedMotion:
+        """Send its command and keep the motion; a motion that could not be sent is not active."""
+        send()
         self._board.add(motion)
         self._motion = motion
         return motion

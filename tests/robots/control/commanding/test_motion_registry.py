@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from robots.control.commanding.motion_registry import CommandedMotion
 from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands.world_commands import AnyCommand
-from robots.sim.ports.motion_registry import SimMotion
 
 
 class Asked:
@@ -19,7 +19,7 @@ class Asked:
 
     def __init__(self) -> None:
         self.sent: list[AnyCommand] = []
-        self.motion = SimMotion(7, send=self.sent.append, progress=lambda: None)
+        self.motion = CommandedMotion(7, send=self.sent.append, progress=lambda: None)
 
     async def ask(self, request: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Ask, and return what is done once that is answered."""

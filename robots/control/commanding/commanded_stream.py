@@ -1,4 +1,4 @@
-"""A stream in a simulated world: a motion that follows streamed values."""
+"""A stream to a control loop: a motion that follows streamed values."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ import math
 from collections.abc import Callable
 
 from engine.errors import RobotError
-from robots.sim.commands.arm_commands import FinishStream, Setpoint
-from robots.sim.commands.world_commands import AnyCommand
-from robots.sim.ports.motion_registry import SimMotion
+from robots.control.commanding.arm_commands import ArmCommand, FinishStream, MotionCommand, Setpoint
+from robots.control.commanding.motion_registry import CommandedMotion
 
 
-class SimStream(SimMotion):
+class CommandedStream(CommandedMotion):
     """Implements `robots.port.MotionStream`.
 
     Args:
         number: Number of the motion.
         arm: Name of the executing arm.
         width: Number of values per message.
-        send: Sends a command to the world.
+        send: Sends a command to the control loop.
         progress: Returns the progress of the motion.
     """
 
@@ -28,19 +27,19 @@ class SimStream(SimMotion):
         *,
         arm: str,
         width: int,
-        send: Callable[[AnyCommand], None],
+        send: Callable[[ArmCommand | MotionCommand], None],
         progress: Callable[[], float | None],
     ) -> None:
         super().__init__(number, send=send, progress=progress)
         self._arm = arm
         self._width = width
-        self._send = send
+        self._send_command = send
 
     def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
         """Send target positions or velocities that are `age_s` old; does nothing after the end.
 
         Raises:
-            RobotError: wrong number of values, a value that is not finite, or the world is lost.
+            RobotError: wrong number of values, a value that is not finite, or the device is lost.
         """
         if len(values) != self._width or not all(map(math.isfinite, values)):
             raise RobotError(
@@ -50,9 +49,9 @@ class SimStream(SimMotion):
             )
         if not self.ended:
             numbers = tuple(map(float, values))
-            self._send(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
+            self._send_command(Setpoint(arm=self._arm, motion=self.number, values=numbers, age_s=age_s))
 
     def finish(self) -> None:
         """Request to come to rest and end as REACHED."""
         if not self.ended:
-            self._send(FinishStream(arm=self._arm, motion=self.number))
+            self._send_command(FinishStream(arm=self._arm, motion=self.number))

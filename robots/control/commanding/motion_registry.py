@@ -1,4 +1,4 @@
-"""The active motions of a world, by number: the side on which skills wait."""
+"""The active motions of a control process, by number: the side on which skills wait."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Callable
 
 from engine.errors import CONNECT_AGAIN, RobotError
+from robots.control.commanding.arm_commands import CancelMotion, HoldMotion, MotionCommand, ResumeMotion
 from robots.control.motion_event import (
     AnyMotionEvent,
     MotionFinished,
@@ -15,14 +16,13 @@ from robots.control.motion_event import (
     SetPointJumped,
 )
 from robots.port import MotionEnd, MotionReport
-from robots.sim.commands.world_commands import AnyCommand, CancelMotion, HoldMotion, ResumeMotion
 
 
-class SimMotion:
-    """One motion in a simulated world; implements `robots.port.Motion`."""
+class CommandedMotion:
+    """One motion that a control loop executes; implements `robots.port.Motion`."""
 
     def __init__(
-        self, number: int, *, send: Callable[[AnyCommand], None], progress: Callable[[], float | None]
+        self, number: int, *, send: Callable[[MotionCommand], None], progress: Callable[[], float | None]
     ) -> None:
         self.number = number
         self._send = send
@@ -75,11 +75,11 @@ class SimMotion:
         await answer
 
     def take(self, event: AnyMotionEvent) -> None:
-        """Apply an event of the world."""
+        """Apply an event of the control loop."""
         match event:
             case MotionHeld() | MotionResumed():
                 # Of a hold and a resume in quick succession only the last is reported; it answers both. Later
-                # requests are not answered by it: they are still in transit to the world.
+                # requests are not answered by it: they are still in transit to the control loop.
                 self._answer(event.request)
             case ReflexTripped() | SetPointJumped():
                 # If it ends the motion, its end follows, with the reason.
@@ -102,15 +102,22 @@ class SimMotion:
 
 
 class MotionRegistry:
-    """Numbers motions and forwards the events of the world to them; a `WorldListener`."""
+    """Numbers motions and forwards the events of the control process to them.
 
-    def __init__(self, *, on_lost: Callable[[str], None]) -> None:
+    Args:
+        on_lost: Called with the reason when the control process is lost.
+        at_rest_when_lost: Whether its devices are at rest then, as simulated ones are.
+    """
+
+    def __init__(self, *, on_lost: Callable[[str], None], at_rest_when_lost: bool = True) -> None:
+        self._at_rest_when_lost = at_rest_when_lost
         self._on_lost = on_lost
-        self._motions: dict[int, SimMotion] = {}
+        self._motions: dict[int, CommandedMotion] = {}
         self._last_number = 0
         self.lost_reason = ""
         self.closed_reason = ""
         """Why no motion may start at present; empty if motions may start."""
+        self.closed_hint = "wait a moment"
         self.reflexes: dict[str, str] = {}
         """Latest reflex reason of each arm."""
         self._reflex_listeners: dict[str, list[Callable[[str], None]]] = {}
@@ -119,20 +126,20 @@ class MotionRegistry:
         """Return an unused motion number.
 
         Raises:
-            RobotError: the world is lost, or no motion may start at present.
+            RobotError: the control process is lost, or no motion may start at present.
         """
         if self.lost_reason:
             raise RobotError(self.lost_reason, hint=CONNECT_AGAIN)
         if self.closed_reason:
-            raise RobotError(self.closed_reason, hint="wait a moment")
+            raise RobotError(self.closed_reason, hint=self.closed_hint)
         self._last_number += 1
         return self._last_number
 
-    def add(self, motion: SimMotion) -> None:
+    def add(self, motion: CommandedMotion) -> None:
         """Forward events to `motion`."""
         self._motions[motion.number] = motion
 
-    def active(self) -> tuple[SimMotion, ...]:
+    def active(self) -> tuple[CommandedMotion, ...]:
         """Return the motions that have not ended."""
         return tuple(self._motions.values())
 
@@ -154,7 +161,7 @@ class MotionRegistry:
             del self._motions[event.motion]
 
     def found(self) -> None:
-        """Accept motions again: the world is restored."""
+        """Accept motions again: the control process is restored."""
         self.lost_reason = ""
 
     def lost(self, reason: str) -> None:
@@ -162,5 +169,5 @@ class MotionRegistry:
         self.lost_reason = reason
         motions, self._motions = self._motions, {}
         for motion in motions.values():
-            motion.end_with(MotionReport(end=MotionEnd.FAILED, reason=reason))
+            motion.end_with(MotionReport(end=MotionEnd.FAILED, reason=reason, at_rest=self._at_rest_when_lost))
         self._on_lost(reason)

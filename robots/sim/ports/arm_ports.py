@@ -1,0 +1,32 @@
+"""The ports of the arms of a world, and of the outputs of their controllers; arms with drivers have none here."""
+
+from __future__ import annotations
+
+from robots.control.commanding.commanded_arm_port import CommandedArmPort
+from robots.control.commanding.motion_registry import MotionRegistry
+from robots.scene.sim_scene import ArmPlacement, SimScene
+from robots.sim.host.world_host import WorldHost
+from robots.sim.ports.sim_outputs import SimOutputPort
+from robots.sim.ports.world_arm_link import WorldArmLink
+
+
+def arm_ports(scene: SimScene, host: WorldHost, board: MotionRegistry) -> dict[str, CommandedArmPort]:
+    """Return the port of each simulated arm, by its name."""
+    ports: dict[str, CommandedArmPort] = {}
+    for placement in scene.arms:
+        if not placement.driven:
+            name, model = placement.name, placement.robot()
+            link = WorldArmLink(host, name)
+            ports[name] = CommandedArmPort(link, board, arm=name, joints=model.arm_joints, limits=model.limits)
+    return ports
+
+
+def output_ports(scene: SimScene) -> dict[str, SimOutputPort]:
+    """Return the outputs of each simulated arm that has some, by its name."""
+    counts = {placement.name: _outputs(placement) for placement in scene.arms if not placement.driven}
+    return {name: SimOutputPort(name, count=count) for name, count in counts.items() if count}
+
+
+def _outputs(placement: ArmPlacement) -> int:
+    given = placement.digital_outputs
+    return placement.robot().digital_outputs if given is None else given
