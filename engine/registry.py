@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import importlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache, partial
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -31,6 +31,8 @@ WORLDS = "flexcell.worlds"
 DRIVERS = "flexcell.drivers"
 SERVERS = "flexcell.servers"
 MODELS = "flexcell.models"
+_PACKAGES = frozenset(("engine", "states", "robots", "editor_web", "behaviors"))
+"""The packages of flexcell, which are in the project folder where one works on flexcell itself."""
 
 
 class _BringsStates(Protocol):
@@ -67,7 +69,9 @@ def load_states(start: Path | None = None) -> StateCatalogue:
         loading.add_project(project)
     prepare_types()
     file = str(project.file) if project is not None else None
-    return StateCatalogue(loading.states, modules=loading.modules, broken=loading.broken, project_file=file)
+    return StateCatalogue(
+        loading.states, modules=loading.modules, broken=loading.broken, project_file=file, sources=loading.sources
+    )
 
 
 def state_by_path(name: str) -> type[State]:
@@ -147,6 +151,7 @@ class _Loading:
         self.states: dict[str, type[State]] = {}
         self.modules: dict[str, ModuleType] = {}
         self.broken: dict[str, RegistryError] = {}
+        self.sources: dict[str, Path] = {}
 
     def add_entry_point(self, point: EntryPoint) -> None:
         offered = load_isolated(point.name, partial(_offered, point))
@@ -172,17 +177,24 @@ class _Loading:
             # At the end: a module of the project must not shadow a library that is imported later.
             sys.path.append(folder)
         importlib.invalidate_caches()
+        before = set(sys.modules)
         for index, name in enumerate(project.document.states):
             loaded = load_isolated(name, partial(_own_module, name, project.folder))
             if isinstance(loaded, LoadFailure):
                 where = project.position(index)
-                self.broken[name] = RegistryError(str(loaded), where=where, hint="fix the module and restart")
+                self.broken[name] = RegistryError(
+                    str(loaded), where=where, hint="fix the module; a server loads it again when it changes"
+                )
                 continue
             self.modules[name], states = loaded
             for class_name, state in states.items():
                 self.states[f"{name}:{class_name}"] = state
                 if state.state_name and state.__module__ == name:
                     self._add(state.state_name, state, name)
+        self.sources = own_sources(project.folder, {*project.document.states, *(set(sys.modules) - before)})
+        # A module that has failed is loaded when it is corrected.
+        failed = ((name, _own_files(project.folder, name)) for name in project.document.states if name in self.broken)
+        self.sources |= {name: files[0] for name, files in failed if files}
 
     def _add(self, name: str, state: type[State], origin: str) -> None:
         known = self.states.get(name)
@@ -207,11 +219,28 @@ def _offered(point: EntryPoint) -> dict[str, type[State]]:
 def _own_module(name: str, folder: Path) -> tuple[ModuleType, dict[str, type[State]]]:
     """Import a module with its states; another module of the same name must not shadow that of the project folder."""
     module = importlib.import_module(name)
-    path = folder.joinpath(*name.split("."))
-    own = [file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
-    if own and module.__file__ is not None and Path(module.__file__).resolve() not in [file.resolve() for file in own]:
+    own = _own_files(folder, name)
+    if own and module.__file__ is not None and Path(module.__file__).resolve() not in own:
         raise ImportError(f"another module of this name is loaded from {module.__file__}; rename {own[0]}")
     return module, _states_of(module)
+
+
+def own_sources(folder: Path, names: Iterable[str]) -> dict[str, Path]:
+    """Return the file of each loaded module that is in a project folder under its own name; none of flexcell itself."""
+    found: dict[str, Path] = {}
+    for name in names:
+        file = getattr(sys.modules.get(name), "__file__", None)
+        if isinstance(file, str) and Path(file).resolve() in _own_files(folder, name):
+            found[name] = Path(file).resolve()
+    return found
+
+
+def _own_files(folder: Path, name: str) -> list[Path]:
+    """Return the files of a project folder that are a module of this name; empty for the packages of flexcell."""
+    if name.partition(".")[0] in _PACKAGES:
+        return []
+    path = folder.joinpath(*name.split("."))
+    return [file.resolve() for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
 
 
 def _states_of(module: ModuleType) -> dict[str, type[State]]:

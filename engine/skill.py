@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Generic, TypeVar, get_args, get_origin
+from typing import Any, ClassVar, Generic, Literal, TypeVar, get_args, get_origin
 
 import msgspec
 
@@ -53,12 +53,33 @@ ARM_SKILL_TITLES = {
 }
 """The skills that arms serve under their own name; those of other devices are words already: `grasp`, `attach_part`."""
 
+Capability = Literal[
+    "trajectory", "stream", "torque", "contact", "force", "guide", "reflex", "outputs", "gripper", "hand"
+]
+
+CAPABILITIES: Mapping[Capability, str] = {
+    "trajectory": "sampled trajectories",
+    "stream": "streamed set points",
+    "torque": "impedance control",
+    "contact": "measured contact forces",
+    "force": "force control",
+    "guide": "hand guiding",
+    "reflex": "the collision reflex",
+    "outputs": "digital outputs",
+    "gripper": "gripper commands",
+    "hand": "hand commands",
+}
+"""What a driver can do, in words, as messages say it."""
+
 _ADDRESS = re.compile(r"(?!root/)[A-Za-z]\w*(?:/[A-Za-z]\w*)+")
 _ARM = re.compile(r"(?:^|_)arm(?:_|\d|$)")
 
 
 class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of services and actions; subclass `Service` or `Action`."""
+
+    capability: ClassVar[Capability | None] = None
+    """What the driver of the device must be able to do; None for nothing in particular."""
 
     @classmethod
     def skill_name(cls) -> str:
@@ -120,6 +141,17 @@ class NamedAction(Action[object, object], frozen=True, kw_only=True):
     def data(self) -> object:
         """Return the fields."""
         return self.fields
+
+
+def required_capability(name: str) -> Capability | None:
+    """Return what the driver must be able to do for a skill, by its name on the bus; None for nothing, or no skill."""
+    pending: list[type[Skill[Any]]] = [Skill]
+    while pending:
+        skill = pending.pop()
+        if skill.capability is not None and skill.skill_name() == name:
+            return skill.capability
+        pending.extend(skill.__subclasses__())
+    return None
 
 
 def skill_words(address: str) -> str:

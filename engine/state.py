@@ -27,7 +27,7 @@ import msgspec
 from engine.cause_chain import wrap_cause
 from engine.clock import Clock
 from engine.errors import Cause, PathBlocked
-from engine.skill import Action, Service
+from engine.skill import Action, Service, Skill
 from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
 from engine.skills.goal_end import GoalEnd
 
@@ -41,6 +41,7 @@ R = TypeVar("R")
 F = TypeVar("F")
 S = TypeVar("S", bound=msgspec.Struct)
 
+Skills = tuple[type[Skill[Any]], ...]
 _NO_OUTPUT: Mapping[str, object] = {}
 _ALWAYS_WRITTEN: Mapping[str, tuple[str, ...]] = {}
 
@@ -171,9 +172,8 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     outcomes: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[Mapping[str, Any]] = _NO_OUTPUT
     """Output key → type."""
-    capability: ClassVar[str] = ""
-    """What the driver of the device that it commands must be able to do, see `engine.cell.drivers`; empty for nothing
-    in particular."""
+    skills: ClassVar[Skills] = ()
+    """The skills that it performs and that need a capability of the device; the check compares them with its driver."""
     icon: ClassVar[str] = ""
     """The name of its icon on the page; without one, `ICON` of its module, then of its package."""
     success: ClassVar[tuple[str, ...]] = ()

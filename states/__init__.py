@@ -11,6 +11,8 @@ from states.bus.check_message import CheckMessage
 from states.bus.publish import Publish
 from states.bus.send_goal import SendGoal
 from states.bus.wait_for_message import WaitForMessage
+from states.calibration.four_point_tool import FourPointTool
+from states.calibration.three_point_frame import ThreePointFrame
 from states.cell.expect_part import ExpectPart
 from states.cell.reach import Reach
 from states.cell.withdraw import Withdraw
@@ -44,6 +46,7 @@ from states.motion.move_pose import MovePose
 from states.motion.move_until_contact import MoveUntilContact
 from states.motion.plan_motion import PlanMotion
 from states.motion.press_along_dmp import PressAlongDmp
+from states.motion.read_pose import ReadPose
 from states.motion.recover import Recover
 from states.motion.set_collision import SetCollision
 from states.motion.set_controller import SetController
@@ -79,6 +82,7 @@ _STATES: tuple[type[State], ...] = (
     FollowRecording,
     FollowWaypoints,
     ForgetOccupancy,
+    FourPointTool,
     Grasp,
     Guide,
     HandCheckHeld,
@@ -104,6 +108,7 @@ _STATES: tuple[type[State], ...] = (
     PutObstacle,
     Reach,
     ReadEntry,
+    ReadPose,
     Recover,
     RemoveObstacle,
     SendGoal,
@@ -115,6 +120,7 @@ _STATES: tuple[type[State], ...] = (
     SetSpeed,
     SetToolFrame,
     SetValue,
+    ThreePointFrame,
     Wait,
     WaitForMessage,
     Withdraw,

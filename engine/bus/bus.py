@@ -144,7 +144,8 @@ class SkillBus:
     ) -> None:
         """Serve `skill` at `<namespace>/<skill_name>`; the handler may be synchronous or async.
 
-        A service that `commands` a resource refuses other callers while a run holds that resource.
+        A service that `commands` a resource refuses other callers while a run holds that resource. A skill that is
+        explained as missing there, see `explain_missing`, is left out.
 
         Raises:
             HandlerNotTyped: the handler lacks the skill's annotations.
@@ -152,7 +153,8 @@ class SkillBus:
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
-        self._services[address] = _ServiceServer(skill, handler, commands)
+        if not self._explanation(address):
+            self._services[address] = _ServiceServer(skill, handler, commands)
 
     def advertise_action(
         self,
@@ -166,13 +168,18 @@ class SkillBus:
 
         Actions that share `exclusive` execute one goal at a time between them; a second goal is rejected,
         and the message names the active one. An idle goal, see `ActiveGoal.replaceable`, ends for it instead.
+        A skill that is explained as missing there is left out.
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
-        self._actions[address] = _ActionServer(skill, handler, exclusive or address)
+        if not self._explanation(address):
+            self._actions[address] = _ActionServer(skill, handler, exclusive or address)
 
     def explain_missing(self, namespace: str, reason: Callable[[str], str]) -> None:
-        """Give the reason why a skill is not served at `namespace`: by its name, empty where there is none."""
+        """Give the reason why a skill is not served at `namespace`: by its name, empty where there is none.
+
+        Call it before the skills are advertised: those with a reason are left out then.
+        """
         self._reasons[namespace] = reason
 
     def withdraw(self, namespace: str) -> None:
@@ -295,9 +302,12 @@ class SkillBus:
             raise BusError("this address is already served", where=address)
         return address
 
-    def _no_such_service(self, address: str) -> NoSuchSkill:
+    def _explanation(self, address: str) -> str:
         namespace, _, skill = address.rpartition("/")
-        reason = self._reasons[namespace](skill) if namespace in self._reasons else ""
+        return self._reasons[namespace](skill) if namespace in self._reasons else ""
+
+    def _no_such_service(self, address: str) -> NoSuchSkill:
+        reason = self._explanation(address)
         if reason:
             return NoSuchSkill(reason, where=address, hint="use another device, or simulate it with `driver: sim`")
         known = [*self._services, *self._actions]

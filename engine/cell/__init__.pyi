@@ -3,6 +3,7 @@
 from engine.cell.camera_coverage import CameraCoverage, RegionCoverage
 from engine.cell.cell_connection import CellConnection
 from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_items
+from engine.cell.device_details import DeviceDetails, devices_of_cell
 from engine.cell.open_cell import OpenCell
 from engine.cell.robot_models import RobotModels, RobotSummary, tool_kinds
 from engine.cell.tool_kind import ToolKind
@@ -12,11 +13,13 @@ __all__ = [
     "CellConnection",
     "CellItem",
     "CellItems",
+    "DeviceDetails",
     "OpenCell",
     "RegionCoverage",
     "RobotModels",
     "RobotSummary",
     "ToolKind",
+    "devices_of_cell",
     "items_of_cell",
     "named_items",
     "tool_kinds",

@@ -8,7 +8,9 @@ to the value of the parameter `robot` of the same state: `panda_hand` is `left/p
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import Final
 
 from engine.cell.drivers.driver import Driver
 from engine.cell.drivers.driver_assignments import assigned_drivers
@@ -16,6 +18,7 @@ from engine.cell.robot_models import RobotModels, RobotSummary, robot_models, to
 from engine.document.cell import Cell
 from engine.document.robot_spec import RobotSpec
 from engine.errors import FlexcellError
+from engine.state import Skills
 from engine.suggestions import did_you_mean
 
 CellNameKind = str
@@ -93,16 +96,22 @@ class CellNames:
         """Return whether a name may be added while the cell is open; links of arms are never added."""
         return kind in _GROWING and "/" not in name
 
-    def beyond_driver(self, kind: CellNameKind, name: str, capability: str) -> str:
-        """Return why the driver of a robot, or of its tool of this kind, cannot do something; empty if it can."""
+    def beyond_driver(self, kind: CellNameKind, name: str, skills: Skills) -> str:
+        """Return why the driver of a robot, or of its tool of this kind, cannot perform skills; empty if it can."""
         driver = self.drivers.get(name if kind == "robot" else f"{name}/{kind}")
-        return driver.lacks(capability) if driver is not None else ""
+        if driver is None:
+            return ""
+        # Skills of a tool are those of another device than the arm that carries it.
+        own = (skill for skill in skills if kind == (skill.capability if skill.capability in _TOOLS else "robot"))
+        return next((reason for skill in own if (reason := driver.lacks_for_skill(skill.skill_name()))), "")
 
     def listed(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the sorted names of every known kind."""
         return {kind: tuple(sorted(names)) for kind, names in self.by_kind.items()}
 
 
+_TOOLS: Final = ("gripper", "hand")
+"""Capabilities of tools, each with the name of its kind of tool."""
 _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
     "robot": ("person", "part", "camera"),
     "detector": ("camera",),
@@ -182,7 +191,10 @@ def _drivers(cell: Cell) -> dict[str, Driver]:
             driver = assigned.driver()
         except FlexcellError:
             continue  # the check of the cell reports the error
-        found[assigned.device_name(driver)] = driver
+        name = assigned.device_name(driver)
+        found[name] = driver
+        with suppress(FlexcellError):  # as above, of an option
+            found[name] = driver.configured(assigned.options(driver))
     return found
 
 

@@ -10,6 +10,7 @@ import asyncio
 import logging
 from collections.abc import Callable, Mapping
 from contextlib import AsyncExitStack, suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
@@ -17,6 +18,7 @@ from engine.bus import SkillBus
 from engine.cell.cell_connection import CellConnection, CellConnectionMonitor
 from engine.cell.cell_store import open_cell_store, store_address
 from engine.cell.cell_topics import open_topics
+from engine.cell.drivers.device_context import DeviceContext
 from engine.cell.drivers.driver_assignments import AssignedDriver, assigned_drivers
 from engine.clock import new_clock
 from engine.document.cell import Cell
@@ -26,6 +28,7 @@ from engine.measures import TopicMeasures
 from engine.preemption import OverduePolicy, preempt
 from engine.registry import WORLDS, load_factory
 from engine.robot import MeasurePort, Robot, World
+from engine.skills.devices import EnableDevice
 from engine.stop import StopRelay
 from engine.store import Store, publish_changes, register_store
 
@@ -47,6 +50,7 @@ class OpenCell:
         seed: Seed of the random part poses of a simulated world within their jitter; None for the nominal poses.
         store_path: Replaces the store of the document: a file, or the address of a MongoDB server.
         relay: Provides a stop line for every process that moves devices; without it, STOP needs the event loop.
+        capture: Folder to which the bytes of all connections to real devices are captured; None for none.
     """
 
     def __init__(
@@ -56,6 +60,7 @@ class OpenCell:
         seed: int | None = None,
         store_path: str | None = None,
         relay: StopRelay | None = None,
+        capture: Path | None = None,
     ) -> None:
         self.document = cell
         self.seed = seed
@@ -68,6 +73,7 @@ class OpenCell:
         self._real_arms = TopicMeasures(())
         self._store_path = store_path
         self.relay = relay
+        self._capture = capture
         self._stack = AsyncExitStack()
         self._connections = CellConnectionMonitor(self.bus)
 
@@ -114,6 +120,18 @@ class OpenCell:
             if owner is not None and not self.connection.connected:
                 raise ControlError(f"{robot} is commanded by run {owner}", where=self.name, hint="stop that run first")
         await self._connections.reconnect()
+
+    async def enable(self, reason: str, *, by: str = "") -> None:
+        """Permit motion of all real devices: the command of a person, who gives name and reason.
+
+        Raises:
+            FlexcellError: a device cannot move; the message names the cause.
+        """
+        skill = EnableDevice.skill_name()
+        for address in self.bus.skills():
+            device, _, name = address.rpartition("/")
+            if name == skill:
+                await self.bus.call(EnableDevice(reason=reason, by=by), to=device)
 
     async def __aenter__(self) -> Self:
         try:
@@ -164,7 +182,9 @@ class OpenCell:
         Raises:
             RobotError: a device is not connected.
         """
-        ports = (self._real_arms, *(device for device in self.devices if isinstance(device, MeasurePort)))
+        # A world has the bodies of real arms too: what is measured of these arms counts more.
+        devices = (self._world, self._real_arms, *self.robots.values(), *self.tools.values())
+        ports = [device for device in devices if isinstance(device, MeasurePort)]
         return {name: value for port in ports for name, value in port.measures().items()}
 
     async def snapshot(self) -> bytes | None:
@@ -239,10 +259,10 @@ class OpenCell:
         robots: dict[str, Robot] = {}
         tools: dict[str, Robot] = {}
         for name, entry in cell.document.robots.items():
-            robots[name] = simulated[name] if entry.simulated else self._driven(driven[name, False])
+            robots[name] = simulated[name] if entry.simulated else self._driven(driven[name, False], robots)
             await self._open_device(robots[name])
             if (name, True) in driven:
-                tool = self._driven(driven[name, True])
+                tool = self._driven(driven[name, True], robots)
                 await self._open_device(tool)
                 tools[tool.name] = tool
         self.robots = robots
@@ -257,18 +277,27 @@ class OpenCell:
         robot.register(self.bus)
         self._connections.follow(robot)
 
-    def _driven(self, assigned: AssignedDriver) -> Robot:
+    def _driven(self, assigned: AssignedDriver, opened: Mapping[str, Robot]) -> Robot:
         """Return the device of a driver, which refuses what the driver cannot do with the reason."""
         try:
             driver = assigned.driver()
             name = assigned.device_name(driver)
-            device = driver.new_device(assigned.options(driver), name=name, clock=self.bus.clock)
+            context = DeviceContext(
+                cell=assigned.cell,
+                robot=assigned.robot,
+                world=self._world,
+                devices=opened,
+                new_stop_line=self.relay.new_line if self.relay is not None else None,
+                capture=self._capture,
+            )
+            options = assigned.options(driver)
+            device = driver.new_device(options, name=name, clock=self.bus.clock, context=context)
         except DocumentError:
             raise  # it has the position of the option
         except FlexcellError as error:
             where = f"{'tool of ' if assigned.tool else ''}robot {assigned.robot} of {assigned.cell.file}"
             raise CellError(error.message, where=where, hint=error.hint) from error
-        self.bus.explain_missing(name, driver.lacks_for_skill)
+        self.bus.explain_missing(name, driver.configured(options).lacks_for_skill)
         return device
 
 

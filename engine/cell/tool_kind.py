@@ -29,6 +29,8 @@ class ToolKind:
         mechanisms: By the `kind` of a mechanism in `tool.yaml`, where its model is found, `module:NAME`.
         release_goal: The goal that makes it release what it holds, from `<arm>/<name>`; None if no goal does that.
         simulation: Where the simulated world finds what simulates it, `module:NAME`.
+        switched: Where the driver of tools on digital outputs finds what serves one, `module:NAME`; empty where such a
+            tool makes no sense.
         states: The states that come with it; those of the installed package of states need not be listed.
     """
 
@@ -39,5 +41,6 @@ class ToolKind:
     check: str
     mechanisms: Mapping[str, str]
     simulation: str
+    switched: str = ""
     states: tuple[type[State], ...] = ()
     release_goal: Action[Any, Any] | None = None

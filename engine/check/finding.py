@@ -20,6 +20,10 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "circular-behavior": ("error", "behaviors refer to each other in a cycle"),
     "invalid-cell": ("error", "the cell of the behavior, or its entries, cannot be read"),
     "unknown-state": ("error", "no state has this name, or its class is invalid"),
+    "outdated-state": (
+        "warning",
+        "the file of a state class has changed and cannot be loaded; the class from before is used",
+    ),
     "module-not-allowed": ("error", "a document names a class of a module that the project does not allow"),
     "broken-behaviour": ("error", "a py_trees behaviour cannot be loaded, or is not a behaviour class"),
     "unknown-parameter": ("error", "the state or behavior has no such parameter"),

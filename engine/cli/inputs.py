@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Annotated
 
 import msgspec
+import typer
 
 from engine.authoring.python_file import load_python_behavior
 from engine.check import Finding, check_behavior, require_no_errors
@@ -13,10 +15,18 @@ from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.python_name import is_python_name
+from engine.document.simulated_devices import with_simulated_devices
 from engine.document.substitutes import Substitutes
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.suggestions import did_you_mean
+
+Simulate = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Simulate this robot (`left`) or tool (`left/gripper`) instead of driving it, or `all`; may be repeated."
+    ),
+]
 
 
 def read_behavior(
@@ -80,6 +90,21 @@ def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:
     if behavior is not None and behavior.cell_file is not None:
         return load_cell(behavior.cell_file)
     return None
+
+
+def read_simulated_cell(cell: Cell | None, file: Path, simulate: Sequence[str]) -> Cell | None:
+    """Return the cell, or else that of the behavior `file`, with these devices simulated; None without names or cell.
+
+    Raises:
+        DocumentError: a document cannot be read, or the cell cannot simulate such a device.
+    """
+    if not simulate:
+        return cell
+    name = str(file)
+    found = cell or read_cell(None, load_python_behavior(name) if is_python_name(name) else load_behavior(file))
+    if found is None:
+        raise DocumentError("the behavior names no cell to simulate", where="--simulate", hint="give --cell CELL")
+    return with_simulated_devices(found, simulate)
 
 
 def read_parameters(given: Sequence[str], declared: Mapping[str, ParameterSpec]) -> dict[str, object]:

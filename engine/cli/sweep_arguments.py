@@ -10,6 +10,10 @@ import typer
 File = Annotated[Path, typer.Argument(help="A sweep document, or a behavior with --vary.", show_default=False)]
 Results = Annotated[Path, typer.Option(help="File in which results are found and saved.")]
 Cell = Annotated[Path | None, typer.Option(help="Cell of all runs; by default that of the behavior.")]
+Simulate = Annotated[
+    list[str] | None,
+    typer.Option(help="A device to simulate instead of its driver, or `all`; may be repeated. No real one is driven."),
+]
 Parameter = Annotated[
     list[str] | None, typer.Option("-p", "--parameter", help="Parameter of all runs, NAME=VALUE; may be repeated.")
 ]

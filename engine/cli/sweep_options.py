@@ -37,6 +37,7 @@ class SweepOverrides:
     design: str | None = None
     seed: int | None = None
     cell: Path | None = None
+    simulate: Sequence[str] = ()
     parameters: Sequence[str] = ()
     confidence: float | None = None
     search: str | None = None
@@ -62,6 +63,8 @@ def read_sweep(file: Path, options: SweepOverrides) -> Sweep:
     _with_search(data, options)
     if options.cell is not None:
         data["cell"] = os.path.relpath(options.cell.resolve(), file.parent.resolve())
+    if options.simulate:
+        data["simulate"] = list(options.simulate)
     if options.vary:
         data["factors"] = {**cast("Data", data.get("factors") or {}), **dict(map(parse_factor, options.vary))}
     if options.parameters:

@@ -49,6 +49,7 @@ from engine.document.nodes.node_spec import (
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.document.simulated_devices import with_simulated_devices
 from engine.document.sweep import SweepDocument
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.yaml_source import MAX_BYTES, DataPath, DocumentSource, load_source, parse_source
@@ -106,5 +107,6 @@ __all__ = [
     "read_behavior",
     "read_signature",
     "survey_behavior",
+    "with_simulated_devices",
     "write_yaml",
 ]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -163,15 +163,17 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 
     @property
     def real_devices(self) -> dict[str, str]:
-        """The devices that are not simulated, in words, with their drivers: `robot left`, `tool of left`."""
-        arms = {f"robot {name}": robot.driver_kind for name, robot in self.robots.items() if not robot.simulated}
+        """The devices that are not simulated, `left` or `left/gripper`, with the names of their drivers."""
+        arms = {name: robot.driver_kind for name, robot in self.robots.items() if not robot.simulated}
         tools = {name: robot.gripper.driver_kind for name, robot in self.robots.items() if robot.gripper is not None}
-        return arms | {f"tool of {name}": kind for name, kind in tools.items() if kind}
+        return arms | {f"{name}/gripper": kind for name, kind in tools.items() if kind}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cell(DocumentFile[CellDocument]):
-    """A cell document with its file."""
+    """A cell document with its file; `simulated` are devices whose drivers the simulation replaces, with these."""
+
+    simulated: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def name(self) -> str:

@@ -1,13 +1,15 @@
 """The classes that documents may name; a lookup imports nothing.
 
-A catalogue is created once, at the start of a command or server, by `engine.registry.load_states`. Any
-mapping of names to states can be used as one when no modules are allowed.
+A catalogue is created once, at the start of a command or server, by `engine.registry.load_states`; its content is
+replaced when modules of the project have changed (`engine.library.state_reloading`). Any mapping of names to states can
+be used as one when no modules are allowed.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from types import MappingProxyType, ModuleType
 
 from engine.document.project_file import PROJECT_FILE
@@ -28,6 +30,7 @@ class StateCatalogue(Mapping[str, type[State]]):
         modules: The loaded modules that the project allows.
         broken: The error of each name, module or entry point that could not be loaded.
         project_file: The file that allows modules; None when there is no project file yet.
+        sources: The file of each module of the project that was imported for its states, by module name.
     """
 
     def __init__(
@@ -37,10 +40,15 @@ class StateCatalogue(Mapping[str, type[State]]):
         modules: Mapping[str, ModuleType] | None = None,
         broken: Mapping[str, RegistryError] | None = None,
         project_file: str | None = None,
+        sources: Mapping[str, Path] | None = None,
     ) -> None:
         self._states = dict(sorted(states.items()))
+        self._added: Catalogue = {}
         self.modules: Mapping[str, ModuleType] = dict(modules or {})
         self.broken: Mapping[str, RegistryError] = dict(broken or {})
+        self.sources: Mapping[str, Path] = dict(sources or {})
+        self.outdated: RegistryError | None = None
+        """Why the changed modules of the project could not be loaded anew; their classes are those from before."""
         self._project_file = project_file
 
     def __getitem__(self, name: str) -> type[State]:
@@ -55,9 +63,27 @@ class StateCatalogue(Mapping[str, type[State]]):
     def including(self, classes: Mapping[str, type]) -> StateCatalogue:
         """Return a catalogue with additional states, such as those that a Python file passes to its behavior."""
         states = {name: kind for name, kind in classes.items() if issubclass(kind, State)}
-        return StateCatalogue(
-            {**self._states, **states}, modules=self.modules, broken=self.broken, project_file=self._project_file
+        made = StateCatalogue(
+            {**self._states, **states},
+            modules=self.modules,
+            broken=self.broken,
+            project_file=self._project_file,
+            sources=self.sources,
         )
+        made.outdated = self.outdated
+        made._added = {**self._added, **states}
+        return made
+
+    def adopt(self, other: StateCatalogue) -> None:
+        """Take the content of another catalogue; additional states stay."""
+        # Whoever reads meanwhile has the old mapping or the new one, never a part of each.
+        self._states = dict(sorted({**other._states, **self._added}.items()))
+        self.modules, self.broken, self.sources = other.modules, other.broken, other.sources
+        self.outdated = None
+
+    def outdated_class(self, state: type[State]) -> RegistryError | None:
+        """Return why a class is older than its file; None if it is not."""
+        return self.outdated if state.__module__ in self.sources else None
 
     def missing(self, name: str) -> RegistryError:
         """Return the error for a missing state, with a hint."""

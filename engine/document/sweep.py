@@ -131,6 +131,9 @@ class SweepDocument(StrictModel, frozen=True, kw_only=True):
     description: str = ""
     behavior: Annotated[str, Meta(min_length=1, description="Behavior, relative to this document")]
     cell: Annotated[str, Meta(min_length=1, description="Cell, relative to this document")] | None = None
+    simulate: Annotated[
+        tuple[str, ...], Meta(description="Devices that the world simulates instead of their drivers: names, or `all`")
+    ] = ()
     store: Annotated[str, Meta(min_length=1, description="Store file that each run starts with")] | None = None
     parameters: dict[str, object] = {}
     inputs: dict[str, object] = {}

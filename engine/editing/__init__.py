@@ -18,6 +18,7 @@ from engine.editing.edits.apply import EditRefusal, EditResult, apply_edits, cop
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext
 from engine.editing.references import ReferringBehavior, move_with_references, referrers
+from engine.editing.state_source import StateSource, state_source
 from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
 from engine.editing.targets.target_checks import TargetChecks
 from engine.editing.targets.target_messages import TargetFindings
@@ -50,6 +51,7 @@ __all__ = [
     "ProjectContext",
     "ReferringBehavior",
     "Side",
+    "StateSource",
     "StateView",
     "StoredDocument",
     "TargetChecks",
@@ -65,6 +67,7 @@ __all__ = [
     "plan_adaptation",
     "proposed_file",
     "referrers",
+    "state_source",
     "state_views",
     "text_hash",
     "write_adaptation",

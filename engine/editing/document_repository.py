@@ -32,6 +32,7 @@ from engine.editing.versions import DocumentVersion, VersionHistory, write_atomi
 from engine.errors import DocumentError, Position
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.library.behavior_library import FindingView, Library
+from engine.library.state_reloading import StateReloading
 
 _ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
 _LATER = re.compile(r"\.breakpoints\.ya?ml$")
@@ -66,8 +67,18 @@ class DocumentRepository:
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
         self._drafts = DraftCache()
+        self.states = StateReloading(self._project, catalogue)
+        """What watches the modules of the project's own states."""
         self.library = Library(self._project, catalogue, cell=cell)
         """The behaviors among them, read as the last saved files say."""
+
+    def reload_states(self) -> bool:
+        """Load the changed modules of the project's states anew; return whether catalogue or findings have changed."""
+        if not self.states.load():
+            return False
+        self._drafts.clear()
+        self.library.forget()
+        return True
 
     @property
     def project(self) -> Path:

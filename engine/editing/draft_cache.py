@@ -61,6 +61,11 @@ class DraftCache:
         """Number of entries in the cached texts."""
         return sum(each.entries for each in self._cache.values())
 
+    def clear(self) -> None:
+        """Drop all texts: they are drawn again with other states."""
+        with self._lock:
+            self._cache.clear()
+
     def draw(self, text: str, *, file: Path, context: ProjectContext, check: bool = False) -> DocumentAnalysis:
         """Parse a text and build its graph; the check runs if asked for, and if the text cannot be read."""
         try:

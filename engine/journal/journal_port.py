@@ -44,6 +44,8 @@ class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     `documents` holds the texts of the behavior and of all documents that it refers to, by relative path;
     `document` names the behavior among them: files may change while a run is interrupted.
+    `simulated` names the devices of the cell whose drivers the simulation replaced, `real` those that were driven; None
+    where an earlier version did not record it.
     `seed` is the seed of the cell, `run_seed` the seed of the run.
     """
 
@@ -53,6 +55,8 @@ class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     parameters: dict[str, object] = {}
     inputs: dict[str, object] = {}
     cell: str | None = None
+    simulated: tuple[str, ...] = ()
+    real: tuple[str, ...] | None = None
     store: str | None = None
     seed: int | None = None
     run_seed: int = 0

@@ -98,6 +98,10 @@ class Library:
         self._project = project.resolve()
         self._read: dict[str, _Read] = {}
 
+    def forget(self) -> None:
+        """Read and check every behavior again when it is asked for: the states have changed."""
+        self._read = {}
+
     def views(self) -> tuple[BehaviorView, ...]:
         """Return all behaviors sorted by id; an unreadable one is listed with its error."""
         return tuple(self._fresh(behavior_id).view for behavior_id in sorted(self._ids()))

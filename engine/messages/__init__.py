@@ -20,6 +20,7 @@ from engine.messages.robot_states import (
     GripperState,
     HandState,
     HoldEvidence,
+    JointSetPoint,
     JointState,
     RobotDescription,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "GripperState",
     "HandState",
     "HoldEvidence",
+    "JointSetPoint",
     "JointState",
     "Message",
     "PartPoses",

@@ -8,11 +8,11 @@ from msgspec import UNSET, UnsetType
 
 from engine.messages.geometry import Message, Pose
 
-HoldEvidence = Literal["contact", "width", "current", "not measured"]
+HoldEvidence = Literal["contact", "width", "current", "sensor", "not measured"]
 """What tells which body a tool holds.
 
-Only `contact` names the body. `width` (opening of fingers) and `current` (force of its drive) tell that
-something is held, and not what; with `not measured` nothing tells it.
+Only `contact` names the body. `width` (opening of fingers), `current` (force of its drive) and `sensor` (a switch that
+detects a part) tell that something is held, and not what; with `not measured` nothing tells it.
 """
 
 
@@ -24,6 +24,18 @@ class JointState(Message, frozen=True, kw_only=True):
     position_rad: tuple[float, ...]
     velocity_rad_s: tuple[float, ...]
     effort_nm: tuple[float, ...]
+
+
+class JointSetPoint(Message, frozen=True, kw_only=True):
+    """The joints that a robot follows at `time_s` of its own clock; empty while it is not connected.
+
+    `deviation_rad` is how far the measured joint that is farthest from it is.
+    """
+
+    time_s: float
+    names: tuple[str, ...]
+    position_rad: tuple[float, ...]
+    deviation_rad: float = 0.0
 
 
 class GripperState(Message, frozen=True, kw_only=True, omit_defaults=True):

@@ -10,9 +10,12 @@ from engine.lazy_face import lazy_face
 _HOMES = {
     "ArmRecovery": "engine.project.cell_stop",
     "BusInspector": "engine.project.bus_inspector",
+    "CellReopening": "engine.project.cell_reopening",
     "CellRunner": "engine.project.cell_runner",
     "CellStop": "engine.project.cell_stop",
     "CompletedRun": "engine.project.headless_run",
+    "DeviceRecovery": "engine.project.cell_stop",
+    "DrivenDeviceChoice": "engine.project.cell_reopening",
     "GoalInfo": "engine.project.bus_inspector",
     "InterruptedRun": "engine.project.session_run",
     "ParameterInfo": "engine.project.bus_inspector",

@@ -1,8 +1,9 @@
 # The face of this room for type checkers; `tests/house/test_python_face.py` compares it with what is imported.
 
 from engine.project.bus_inspector import BusInspector, GoalInfo, ParameterInfo, SkillInfo, TopicInfo, TopicStatistics
+from engine.project.cell_reopening import CellReopening, DrivenDeviceChoice
 from engine.project.cell_runner import CellRunner, open_cell
-from engine.project.cell_stop import ArmRecovery, CellStop, StoppedDevice, StoppedRun
+from engine.project.cell_stop import ArmRecovery, CellStop, DeviceRecovery, StoppedDevice, StoppedRun
 from engine.project.headless_run import CompletedRun
 from engine.project.project import Project
 from engine.project.run_request import RunPosition, RunRequest, StartData
@@ -14,9 +15,12 @@ from engine.project.stop_recovery import StopRecovery
 __all__ = [
     "ArmRecovery",
     "BusInspector",
+    "CellReopening",
     "CellRunner",
     "CellStop",
     "CompletedRun",
+    "DeviceRecovery",
+    "DrivenDeviceChoice",
     "GoalInfo",
     "InterruptedRun",
     "ParameterInfo",

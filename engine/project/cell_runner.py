@@ -31,6 +31,7 @@ from engine.runtime.run import Run
 from engine.runtime.run_id import new_run_id
 from engine.runtime.run_options import RunOptions
 from engine.runtime.run_result import RunResult
+from engine.skills.devices import EnableDevice
 from engine.stop import StopRelay
 
 
@@ -52,6 +53,10 @@ class CellSetup:
     """The recording of one run."""
     prepare: Callable[[SkillBus], object] | None = None
     """Registers fakes of a test on the bus before the first run."""
+    enabling: EnableDevice | None = None
+    """A person permits motion of all real devices; None where nobody does."""
+    capture: Path | None = None
+    """Folder to which the bytes of all connections to real devices are captured."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,6 +237,8 @@ class CellRunner:
             parameters=msgspec.to_builtins(parameters),
             inputs=msgspec.to_builtins(inputs),
             cell=str(cell.document.file.resolve()) if cell.document is not None else None,
+            simulated=tuple(cell.document.simulated) if cell.document is not None else (),
+            real=tuple(cell.document.document.real_devices) if cell.document is not None else (),
             store=absolute_address(cell.store_path) if cell.store_path is not None else None,
             seed=cell.seed,
             run_seed=request.seed,
@@ -255,7 +262,12 @@ async def execute_within(limit_s: float | None, prepared: PreparedRun) -> RunRes
 
 @asynccontextmanager
 async def open_cell(
-    cell: Cell | None, *, seed: int | None = None, store: str | None = None, relay: StopRelay | None = None
+    cell: Cell | None,
+    *,
+    seed: int | None = None,
+    store: str | None = None,
+    relay: StopRelay | None = None,
+    capture: Path | None = None,
 ) -> AsyncGenerator[OpenCell]:
     """Open a cell and the relay that stops it; when the block ends, its robots come to rest before the relay ends.
 
@@ -264,6 +276,7 @@ async def open_cell(
         seed: Seed of the random part poses of a simulated world; None for the nominal poses.
         store: Replaces the store of the cell: a file, or the address of a MongoDB server.
         relay: Stops the devices although the event loop is blocked.
+        capture: Folder to which the bytes of all connections to real devices are captured; None for none.
 
     Raises:
         FlexcellError: store, world or robots cannot be opened.
@@ -271,7 +284,8 @@ async def open_cell(
     async with AsyncExitStack() as stack:
         if relay is not None:
             await stack.enter_async_context(relay)
-        yield await stack.enter_async_context(OpenCell(cell, seed=seed, store_path=store, relay=relay))
+        opened = OpenCell(cell, seed=seed, store_path=store, relay=relay, capture=capture)
+        yield await stack.enter_async_context(opened)
 
 
 @asynccontextmanager
@@ -288,8 +302,10 @@ async def open_cell_runner(setup: CellSetup) -> AsyncGenerator[CellRunner]:
             journal = stack.enter_context(Journal.open(setup.journal, inline=inline))
         recorder = await stack.enter_async_context(open_recorder(setup.recording, inline=inline))
         cell = await stack.enter_async_context(
-            open_cell(setup.cell, seed=setup.seed, store=setup.store, relay=setup.relay)
+            open_cell(setup.cell, seed=setup.seed, store=setup.store, relay=setup.relay, capture=setup.capture)
         )
         if setup.prepare is not None:
             setup.prepare(cell.bus)
+        if setup.enabling is not None:
+            await cell.enable(setup.enabling.reason, by=setup.enabling.by)
         yield CellRunner(cell, journal, recorder=recorder)

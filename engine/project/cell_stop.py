@@ -51,12 +51,24 @@ class ArmRecovery(msgspec.Struct, frozen=True, kw_only=True):
     problem: str
 
 
+class DeviceRecovery(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether a real device may move after a stop; `problem` is why not, empty if it may.
+
+    `name` is its address on the bus. A device that does not answer has to be connected again before it is enabled.
+    """
+
+    name: str
+    connected: bool
+    enabled: bool
+    problem: str
+
+
 class CellStop(msgspec.Struct, frozen=True, kw_only=True):
     """The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`.
 
     While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the
     parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are
-    arms and world, in the order of the cell.
+    arms and world, in the order of the cell. `real` are the devices with a driver.
     """
 
     number: int
@@ -67,3 +79,4 @@ class CellStop(msgspec.Struct, frozen=True, kw_only=True):
     runs: tuple[StoppedRun, ...]
     arms: tuple[ArmRecovery, ...]
     parts: Literal["open", "reset", "absent"]
+    real: tuple[DeviceRecovery, ...] = ()

@@ -10,7 +10,9 @@ from typing import TypeVar
 
 from engine.clock import run_virtual
 from engine.document import Behavior
-from engine.document.cell import load_cell
+from engine.document.cell import Cell, load_cell
+from engine.document.simulated_devices import with_simulated_devices
+from engine.errors import DocumentError
 from engine.event import Event
 from engine.project.cell_runner import CellSetup, execute_within, open_cell_runner
 from engine.project.run_request import RunRequest, require_simulation
@@ -34,6 +36,20 @@ class CompletedRun:
     def outcome(self) -> str | None:
         """Its outcome; None if it was stopped or ended with an error."""
         return self.result.outcome
+
+
+def simulated_cell(behavior: Behavior, cell: Cell | None, simulate: Sequence[str]) -> Cell | None:
+    """Return the cell, by default the one that the behavior names, with these devices simulated; `cell` without any.
+
+    Raises:
+        DocumentError: there is no cell, it cannot be read, or it cannot simulate such a device.
+    """
+    if not simulate:
+        return cell
+    found = load_cell(behavior.cell_file) if cell is None and behavior.cell_file is not None else cell
+    if found is None:
+        raise DocumentError("the behavior names no cell to simulate", where=behavior.name, hint="give a cell")
+    return with_simulated_devices(found, simulate)
 
 
 def plan_in_cell(behavior: Behavior, catalogue: Catalogue, setup: CellSetup) -> tuple[Plan, CellSetup]:

@@ -16,7 +16,7 @@ from engine.document.faults import load_faults
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import StateCatalogue
 from engine.project.cell_runner import CellSetup
-from engine.project.headless_run import CompletedRun, outside_loop, plan_in_cell, run_headless
+from engine.project.headless_run import CompletedRun, outside_loop, plan_in_cell, run_headless, simulated_cell
 from engine.project.run_request import RunRequest
 from engine.recording import RecordingOptions, collect_documents, load_recording
 from engine.registry import load_states
@@ -86,6 +86,7 @@ class Project:
         inputs: Mapping[str, object] | None = None,
         seed: int | None = None,
         cell: Cell | None = None,
+        simulate: Sequence[str] = (),
         store: Path | str | None = None,
         faults: Path | str | None = None,
         record: Path | str | None = None,
@@ -101,6 +102,7 @@ class Project:
             inputs: Initial userdata.
             seed: Seed of random choices and of the placement noise of parts; without a seed, no placement noise.
             cell: The cell in which it runs; by default the cell that it names.
+            simulate: Devices of the cell that its world simulates instead of their drivers, or `all`.
             store: Replaces the store of the cell.
             faults: A fault document, relative to the project folder.
             record: MCAP file to which the run is recorded.
@@ -112,6 +114,7 @@ class Project:
             FlexcellError: the behavior has errors, an argument is invalid, or the cell cannot be opened.
         """
         loaded = self._loaded(behavior)
+        cell = simulated_cell(loaded, cell, simulate)
         require_no_errors(self.check(loaded, cell=cell))
         setup = CellSetup(
             cell=cell,

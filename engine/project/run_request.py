@@ -138,14 +138,16 @@ def start_without_run(plan: Plan, path: str) -> RunStart:
     return RunStart(checkpoint=start_checkpoint(read_history(plan, "", ()), plan, path))
 
 
-def start_of(place: Path | str, begin: RunPosition, plan: Plan) -> RunStart:
+def start_of(place: Path | str, begin: RunPosition, plan: Plan, cell: Cell | None) -> RunStart:
     """Return the start at a position: of a run of the journal in `place`, or with the initial values.
 
     Raises:
         FlexcellError: there is no such run or event, or a run cannot start there.
     """
     if begin.run and begin.seq is not None:
-        return start_at(read_run(place, begin.run), plan, seq=begin.seq, path=begin.path)
+        found = read_run(place, begin.run)
+        require_no_new_real_devices(found, cell)
+        return start_at(found, plan, seq=begin.seq, path=begin.path)
     if begin.run or begin.path is None:
         hint = "give `path` without `run`, or both `run` and `seq`"
         raise ControlError("this is no place to start at", where=begin.run or plan.name, hint=hint)
@@ -222,6 +224,37 @@ def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) 
             where=plan.name,
             hint="run it in a simulated cell, or allow it with `--substitute-on-robots`",
         )
+
+
+def require_same_devices(found: RecordedRun, cell: Cell | None) -> None:
+    """Refuse to resume a run where other devices are simulated: what was simulated must not go on with real arms.
+
+    Raises:
+        ControlError: a device was simulated and is real now, or the other way round.
+    """
+    require_no_new_real_devices(found, cell)
+    before, now = set(found.origin.simulated), set(cell.simulated) if cell is not None else set[str]()
+    if before == now:
+        return
+    word, names = ("simulated", before - now) if before - now else ("real", now - before)
+    hint = "switch it in the page, or serve the cell with " + (
+        " ".join(f"--simulate {name}" for name in sorted(before)) if before else "no `--simulate`"
+    )
+    raise ControlError(f"{', '.join(sorted(names))} was {word} in this run", where=found.id, hint=hint)
+
+
+def require_no_new_real_devices(found: RecordedRun, cell: Cell | None) -> None:
+    """Refuse to go on where a device is real that was not: its document, or that of another cell, names a driver now.
+
+    Raises:
+        ControlError: a device was simulated and is real now.
+    """
+    if cell is None or found.origin.real is None:
+        return
+    names = sorted(set(cell.document.real_devices) - set(found.origin.real))
+    if names:
+        hint = "simulate it with " + " ".join(f"`--simulate {name}`" for name in names) + ", or start a new run"
+        raise ControlError(f"{', '.join(names)} was simulated in this run, and is real now", where=found.id, hint=hint)
 
 
 def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -23,6 +23,7 @@ from engine.event import Event
 from engine.journal import Journal, list_runs
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
+from engine.project.cell_reopening import CellReopening
 from engine.project.cell_runner import CellRunner, PreparedRun
 from engine.project.resume_plan import plan_resume
 from engine.project.run_request import (
@@ -31,6 +32,7 @@ from engine.project.run_request import (
     StartData,
     paused_before,
     require_names,
+    require_same_devices,
     require_simulation,
     start_data,
     start_of,
@@ -65,8 +67,10 @@ class Session:
         catalogue: Catalogue,
         journal: Journal,
         recordings: SessionRecordings | None = None,
+        reopening: CellReopening | None = None,
     ) -> None:
         self.cell = cell
+        self.reopening = reopening or CellReopening(cell.document)
         self._entries = StoredEntries(cell)
         self.documents = DocumentRepository(project, catalogue, stored=self._entries.of_cell, cell=cell.document)
         self._library = self.documents.library
@@ -78,6 +82,7 @@ class Session:
         self._callbacks: tuple[RunCallback, ...] = ()
         self._operators = OperatorRoster()
         self._stops = SessionStops(cell, self._runs)
+        self.reopening.refuse_while(self._stops.activity)
         self.recovery = StopRecovery(cell, self._stops)
 
     async def __aenter__(self) -> Self:
@@ -169,7 +174,7 @@ class Session:
         watched = paused_before(plan, watched, until)
         start = None
         if begin is not None:
-            start = await asyncio.to_thread(start_of, self._journal.path, begin, plan)
+            start = await asyncio.to_thread(start_of, self._journal.path, begin, plan, self.cell.document)
             parameters = start.parameters(plan, parameters)
             start, inputs = start.with_userdata(plan, inputs or {}), {}
         if self.cell.document is not None:
@@ -214,6 +219,7 @@ class Session:
         if found.origin.cell != self._cell_file():
             there = found.origin.cell or "no cell"
             raise ControlError(f"this run was executed in {there}", where=run_id, hint="serve that cell")
+        require_same_devices(found, self.cell.document)
         catalogue = self._library.catalogue
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id, found.substitutes)
         require_simulation(plan, self.cell.document)
@@ -232,6 +238,10 @@ class Session:
         watched = RunOptions(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator)
         prepared = await self._runner.resume(resumption, supervision=watched, documents=documents)
         return self._add(behavior_id, prepared, events=found.events)
+
+    def executes_classes_of(self, modules: Collection[str]) -> bool:
+        """Return whether a run that has not ended has states of these modules."""
+        return any(started.executes_classes_of(modules) for started in self._runs.values())
 
     def control(self, run_id: str) -> Control:
         """Return the control interface of an active run.

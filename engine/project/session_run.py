@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -14,6 +14,8 @@ from engine.journal import RunRecord
 from engine.project.cell_runner import PreparedRun
 from engine.runtime.history.live_run import LiveRun
 from engine.runtime.history.run_view import RunView, run_duration_s
+from engine.runtime.nodes.leaf import Leaf
+from engine.runtime.nodes.node import NodeWork
 from engine.runtime.run_result import RunResult
 from engine.suggestions import did_you_mean
 
@@ -57,6 +59,11 @@ class SessionRun:
             self.stopping = True
             self.run.stop(reason)
 
+    def executes_classes_of(self, modules: Collection[str]) -> bool:
+        """Return whether it has not ended and has states or py_trees behaviours of these modules."""
+        nodes = self.run.plan.nodes.values() if self.result is None and modules else ()
+        return any(kind.__module__ in modules for node in nodes for kind in _classes(node.work))
+
     def view(self) -> RunView:
         """Return the status of the run now."""
         result = self.result
@@ -75,6 +82,18 @@ class SessionRun:
             waits=control.waits if control is not None else "",
             ticking=advances and self.live.state.real_time,
         )
+
+
+def _classes(work: NodeWork) -> Iterator[type]:
+    """Yield the classes that a node executes itself."""
+    if isinstance(work, Leaf):
+        yield work.state
+    elif work.kind == "tree":
+        # Imported on demand: py_trees loads slowly, and most behaviors have no tree.
+        from engine.runtime.tree.tree import Tree
+
+        parts = work.root.walk() if isinstance(work, Tree) else ()
+        yield from (part.foreign.kind for part in parts if part.foreign is not None)
 
 
 def interrupted_run(record: RunRecord) -> InterruptedRun:

@@ -68,6 +68,14 @@ class SessionStops:
         """Whether the latest stop still has to be released."""
         return self.latest is not None and not self.latest.released
 
+    def activity(self) -> str:
+        """Return what is under way that closing the cell would end, a stop included; empty for nothing."""
+        if self.latched:
+            return "the cell is stopped"
+        active = [f"run {run_id}" for run_id, started in self._runs.items() if started.result is None]
+        ongoing = [*active, *(goal.address for goal in self._cell.bus.goals())]
+        return f"{ongoing[0]} is active" if ongoing else ""
+
     def begin(self) -> None:
         """Subscribe to stops of the relay, which bypass the event loop."""
         if self._cell.relay is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Iterator
 from contextlib import asynccontextmanager
 from typing import Literal
 
@@ -16,8 +16,11 @@ from engine.cell.robot_models import tool_kinds
 from engine.cell.tool_kind import ToolKind
 from engine.errors import ControlError, FlexcellError, NoSuchSkill, StoreError
 from engine.messages import JointState, RobotDescription
-from engine.project.cell_stop import UNKNOWN_PART, ArmRecovery, CellStop
+from engine.messages.device_state import DeviceState
+from engine.messages.tool_hold import ToolHold
+from engine.project.cell_stop import UNKNOWN_PART, ArmRecovery, CellStop, DeviceRecovery
 from engine.project.session_stops import SessionStops, StopRecord
+from engine.robot import Reconnectable
 from engine.skills.goal_end import GoalStatus
 from engine.store import Joints, decode_entry
 
@@ -58,6 +61,11 @@ class StopRecovery:
         """Whether there is a stop that is not forgotten."""
         return self._stops.latest is not None
 
+    @property
+    def is_latched(self) -> bool:
+        """Whether the latest stop still has to be released."""
+        return self._stops.latched
+
     async def state(self) -> CellStop | None:
         """Return the latest stop and what is open; None if there is none, or it is forgotten."""
         record = self._stops.latest
@@ -73,6 +81,7 @@ class StopRecovery:
             runs=tuple(record.runs.values()),
             arms=tuple(arms),
             parts=self._parts(),
+            real=tuple(self._real()),
         )
 
     async def keep(self, arm: str) -> None:
@@ -191,6 +200,18 @@ class StopRecovery:
             problem=self._problems.get(name, ""),
         )
 
+    def _real(self) -> Iterator[DeviceRecovery]:
+        for name, device in (*self._cell.robots.items(), *self._cell.tools.items()):
+            state = self._latest(f"{name}/device")
+            if isinstance(state, DeviceState):
+                is_lost = isinstance(device, Reconnectable) and bool(device.lost_reason)
+                yield DeviceRecovery(
+                    name=name,
+                    connected=state.connected and not is_lost,
+                    enabled=state.enabled,
+                    problem=state.problem,
+                )
+
     def _parts(self) -> Literal["open", "reset", "absent"]:
         if not self._has(_RESET_PARTS):
             return "absent"
@@ -219,9 +240,7 @@ class StopRecovery:
         """Return the name of the part that the tool of an arm holds, `?` when unknown, empty for none."""
         kind = self._kind(arm)
         state = self._latest(f"{arm}/{kind.name}/state") if kind is not None else None
-        if not getattr(state, "held", False):
-            return ""
-        return str(getattr(state, "part", "")) or UNKNOWN_PART
+        return (state.part or UNKNOWN_PART) if isinstance(state, ToolHold) and state.held else ""
 
     def _kind(self, arm: str) -> ToolKind | None:
         described = self._described(arm)

@@ -25,6 +25,7 @@ _COMMANDS: Mapping[str, Callable[[Control, OperatorCommanded], None]] = {
     "force": lambda control, event: control.force(event.path, _text(event, "outcome")),
     "repeat": lambda control, event: control.repeat(event.path),
     "answer": lambda control, event: control.answer(event.path),
+    "set_userdata": lambda control, event: control.set_userdata(event.path, _text(event, "key"), _text(event, "value")),
     "autonomy": lambda control, event: control.set_autonomy(_text(event, "level")),
     "breakpoints": lambda control, event: control.set_breakpoints(_breakpoints(event)),
 }

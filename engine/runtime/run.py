@@ -234,7 +234,7 @@ class Run:
         """
         self._begin()
         before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
-        scope = Scope("", {**before, **self._inputs}, self._parameters)
+        scope = self._execution.scopes.open("", {**before, **self._inputs}, self._parameters)
         status, left, cause = await self._perform(scope)
         await self._release()
         outcome = (left.target or left.outcome) if left is not None else None
@@ -340,6 +340,7 @@ class Run:
             settlement=self._execution.settlement,
             recorder=self._recorder,
             structure=self,
+            scopes=self._execution.scopes,
             stop=self.stop,
             demanded=self._supervision.demand_operator,
             loss_policy=self._supervision.loss_policy,

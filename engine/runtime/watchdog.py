@@ -104,8 +104,18 @@ class LoopWatchdog:
     def _watch(self) -> None:
         pause_s = self._threshold_s
         while not self._stopped.acquire(timeout=pause_s):
-            pause_s = self._sample()
+            pause_s = self._sampled()
         self._end_turn()
+
+    def _sampled(self) -> float:
+        """Sample, and go on with the next sample where the stack of the other thread cannot be read."""
+        try:
+            return self._sample()
+        except Exception:
+            # CPython 3.11 has once given something that is no frame as the caller of a frame that was executing.
+            _log.exception("the stack of the event loop could not be read; the watchdog goes on")
+            self._turn = None
+            return self._idle_look_s
 
     def _sample(self) -> float:
         """Sample the stack of the loop and return the time until the next sample."""

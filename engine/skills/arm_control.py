@@ -6,12 +6,12 @@ holds the arm, others may read it, change its speed override and recover it; oth
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import msgspec
 
 from engine.messages import Message, Quaternion, Vector3, Vector6, Wrench
-from engine.skill import Service
+from engine.skill import Capability, Service
 
 ControllerName = Literal["joint_impedance", "cartesian_impedance"]
 ArmMode = Literal["disconnected", "fault", "reflex", "idle", "moving", "jogging", "guiding", "direct"]
@@ -85,11 +85,15 @@ class SetSpeedOverride(Service[ControlSettings], frozen=True, kw_only=True):
 class SetController(Service[ControlSettings], frozen=True, kw_only=True):
     """Switch the control law that tracks the set point; the arm does not jump."""
 
+    capability: ClassVar[Capability] = "torque"
+
     controller: ControllerName
 
 
 class SetJointImpedance(Service[ControlSettings], frozen=True, kw_only=True):
     """Set the joint stiffness in N m/rad, one value per joint (empty: nominal), and the damping."""
+
+    capability: ClassVar[Capability] = "torque"
 
     stiffness_nm_rad: JointRow = ()
     damping_ratio: Damping = 1.0
@@ -97,6 +101,8 @@ class SetJointImpedance(Service[ControlSettings], frozen=True, kw_only=True):
 
 class SetCartesianImpedance(Service[ControlSettings], frozen=True, kw_only=True):
     """Set the stiffness of the tool, N/m along and N m/rad about the axes of the arm's base, and the damping."""
+
+    capability: ClassVar[Capability] = "torque"
 
     stiffness: Vector6
     damping_ratio: Damping = 1.0
@@ -125,6 +131,8 @@ class SetCollisionBehavior(Service[ControlSettings], frozen=True, kw_only=True):
 
     An empty `torque_nm` and no `force_n` disable the reflex.
     """
+
+    capability: ClassVar[Capability] = "reflex"
 
     torque_nm: JointRow = ()
     force_n: Annotated[float, msgspec.Meta(gt=0.0)] | None = None

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message, Pose, Vector3, Wrench
-from engine.skill import Action
+from engine.skill import Action, Capability
 from engine.skills.axes import Axes
 from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionFeedback
@@ -76,6 +76,8 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
     With `peak_n` the tool travels the first `clear_m` at `speed_m_s` and the rest as slowly as this peak requires of
     the mass of arm and load on a contact of `surface_n_m`. Rejected before the motion as in CartLinTask.
     """
+
+    capability: ClassVar[Capability] = "contact"
 
     direction: Vector3
     distance_m: MaxDistance

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message
-from engine.skill import Service
+from engine.skill import Capability, Service
 from engine.skills.switch_result import SwitchResult
 
 OutputNumber = Annotated[int, msgspec.Meta(ge=0, description="Number of the output, from 0")]
@@ -23,6 +23,8 @@ class DigitalOutputs(Message, frozen=True, kw_only=True):
 class SetOutput(Service[SwitchResult], frozen=True, kw_only=True):
     """Turn an output on or off."""
 
+    capability: ClassVar[Capability] = "outputs"
+
     output: OutputNumber
     value: On
 
@@ -30,16 +32,22 @@ class SetOutput(Service[SwitchResult], frozen=True, kw_only=True):
 class SetToolExchange(Service[SwitchResult], frozen=True, kw_only=True):
     """Turn the output of the tool exchange on or off."""
 
+    capability: ClassVar[Capability] = "outputs"
+
     value: On
 
 
 class SetGripper(Service[SwitchResult], frozen=True, kw_only=True):
     """Turn the output of the gripper on or off."""
 
+    capability: ClassVar[Capability] = "outputs"
+
     value: On
 
 
 class SetLinearAxis(Service[SwitchResult], frozen=True, kw_only=True):
     """Turn the output of the linear axis (its brake or drive) on or off."""
+
+    capability: ClassVar[Capability] = "outputs"
 
     value: On

@@ -6,14 +6,14 @@ the arm is at rest and ready for the next goal.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message, Pose, Vector6, Wrench
 from engine.messages.demonstrations import Trajectory
 from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
-from engine.skill import Action, Service
+from engine.skill import Action, Capability, Service
 from engine.skills.axes import Axes
 from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
@@ -31,6 +31,8 @@ class JointDMP(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_o
     distance fades out during the motion. `goal` replaces the primitive's goal smoothly; empty for none.
     """
 
+    capability: ClassVar[Capability] = "trajectory"
+
     dmp: JointDmp
     goal: tuple[float, ...] = ()
     start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.1
@@ -43,6 +45,8 @@ class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only
     Rejected before the motion, with the reason, when the tool is farther from the primitive's start than
     the two reaches, or the arm cannot follow the motion. `goal` replaces the primitive's goal smoothly.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     dmp: CartDmp
     goal: Pose | None = None
@@ -108,6 +112,8 @@ class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_o
     `slow_per_n` sets the phase stopping: the motion slows to 1 / (1 + slow_per_n · |force error|). `N`
     kernels encode the offsets.
     """
+
+    capability: ClassVar[Capability] = "force"
 
     dmp: CartDmp
     offsets: CartOffsets | None = None

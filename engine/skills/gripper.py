@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 from msgspec import UNSET, UnsetType
 
 from engine.messages import GripperState, HoldEvidence, Message
-from engine.skill import Action, Service
+from engine.skill import Action, Capability, Service
 
 Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the pads", extra_json_schema={"unit": "m"})]
 FingerSpeed = Annotated[
@@ -52,11 +52,15 @@ class GraspResult(Message, frozen=True, kw_only=True):
 class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
     """Open fully."""
 
+    capability: ClassVar[Capability] = "gripper"
+
     speed_m_s: FingerSpeed = 0.1
 
 
 class GripperMove(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
     """Move the fingers to an opening without a part."""
+
+    capability: ClassVar[Capability] = "gripper"
 
     width_m: Width
     speed_m_s: FingerSpeed = 0.1
@@ -69,6 +73,8 @@ class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tr
     that both pads touch and the final opening is within `width_m` -/+ the tolerances.
     """
 
+    capability: ClassVar[Capability] = "gripper"
+
     width_m: Width
     force_n: Annotated[float, msgspec.Meta(gt=0.0, le=1000.0, description="Grasp force in newton")] = 20.0
     speed_m_s: FingerSpeed = 0.05
@@ -78,3 +84,5 @@ class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tr
 
 class ReadGripper(Service[GripperState], frozen=True, kw_only=True):
     """Return the measured state of the gripper."""
+
+    capability: ClassVar[Capability] = "gripper"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 from msgspec import UNSET, UnsetType
 
 from engine.messages import HandState, HoldEvidence, Message
-from engine.skill import Action, Service
+from engine.skill import Action, Capability, Service
 
 Percent = Annotated[float, msgspec.Meta(ge=0.0, le=100.0, description="Closing position: 0 open, 100 closed")]
 ClosingTime = Annotated[float, msgspec.Meta(gt=0.0, description="Duration of the motion in seconds")]
@@ -42,6 +42,8 @@ class HandClose(Action[HandResult, HandFeedback], frozen=True, kw_only=True):
     a part is held, see `HandResult.held`.
     """
 
+    capability: ClassVar[Capability] = "hand"
+
     percent: Percent
     time_s: ClosingTime = 1.0
 
@@ -49,8 +51,12 @@ class HandClose(Action[HandResult, HandFeedback], frozen=True, kw_only=True):
 class HandOpen(Action[HandResult, HandFeedback], frozen=True, kw_only=True):
     """Open fully in `time_s`, or as fast as the motor can."""
 
+    capability: ClassVar[Capability] = "hand"
+
     time_s: ClosingTime = 1.0
 
 
 class ReadHand(Service[HandState], frozen=True, kw_only=True):
     """Return the measured state of the hand."""
+
+    capability: ClassVar[Capability] = "hand"

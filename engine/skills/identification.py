@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message, Vector3
-from engine.skill import Action
+from engine.skill import Action, Capability
 from engine.skills.collision_options import CollisionOptions
 
 PayloadAmplitude = Annotated[
@@ -75,6 +75,8 @@ class IdentifyPayload(Action[PayloadEstimate, IdentificationFeedback], frozen=Tr
     in. Rejected before the motion where a joint has no room, or the path is not free.
     """
 
+    capability: ClassVar[Capability] = "trajectory"
+
     amplitude_rad: PayloadAmplitude = 0.5
     collisions: CollisionOptions = CollisionOptions()
 
@@ -85,6 +87,8 @@ class IdentifyFriction(Action[FrictionEstimate, IdentificationFeedback], frozen=
     Without `joints` all of them. Measures with the torques of the motors, so that a wrong load has little effect.
     Rejected before the motion where a joint has no room, or the path is not free.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     joints: tuple[str, ...] = ()
     amplitude_rad: FrictionAmplitude = 0.4

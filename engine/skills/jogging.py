@@ -11,12 +11,12 @@ obstacle, and which ways lead out, is published on `<arm>/jog_block`.
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message, Pose, Vector3
-from engine.skill import Action, Service
+from engine.skill import Action, Capability, Service
 from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult, Speed
 from engine.skills.planning import Margin
@@ -130,6 +130,8 @@ class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_onl
     Decelerates before a joint limit and stops at it.
     """
 
+    capability: ClassVar[Capability] = "stream"
+
     velocity_rad_s: tuple[float, ...] = ()
     duration_s: Duration | None = None
     watchdog_s: WatchdogTime = 0.2
@@ -145,6 +147,8 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
     joint limit or a singularity, the whole velocity is scaled down.
     """
 
+    capability: ClassVar[Capability] = "stream"
+
     velocity: tuple[float, ...] = ()
     frame: Axes = "world"
     duration_s: Duration | None = None
@@ -157,6 +161,8 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
 class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
     """Move the joints by `step_rad`, one value per joint; rejected before the motion when a joint limit is exceeded."""
 
+    capability: ClassVar[Capability] = "trajectory"
+
     step_rad: tuple[float, ...]
     speed: Speed = 0.1
     scene: JogCollisionOptions = JogCollisionOptions()
@@ -164,6 +170,8 @@ class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw
 
 class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
     """Move the tool straight by `step_m` and rotate it by the rotation vector `turn_rad`, in the axes of `frame`."""
+
+    capability: ClassVar[Capability] = "trajectory"
 
     step_m: Vector3 = _STILL
     turn_rad: Vector3 = _STILL

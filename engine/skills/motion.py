@@ -6,12 +6,12 @@ it was preempted or failed during the motion; afterwards the arm is at rest and 
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import msgspec
 
 from engine.messages import Message, Pose
-from engine.skill import Action, Service
+from engine.skill import Action, Capability, Service
 from engine.skills.collision_options import CollisionOptions
 
 Speed = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="Fraction of the joint speed limits")]
@@ -55,6 +55,8 @@ class CartMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
 class JointTrapVel(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
     """Move in joint space, all joints in phase, with a trapezoidal velocity profile (RCL table 3)."""
 
+    capability: ClassVar[Capability] = "trajectory"
+
     joints: tuple[float, ...]
     speed: Speed
     collisions: CollisionOptions = CollisionOptions()
@@ -66,6 +68,8 @@ class CartTrapVel(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
     The goal configuration is the inverse-kinematics solution nearest to the current one. An arm with
     fewer than six joints reaches few full poses: use a `match` of `position` or `axis`.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     pose: Pose
     speed: Speed
@@ -79,6 +83,8 @@ class CartLinTask(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_
     Rejected before the motion, with the reason, when a joint limit or joint speed would be exceeded
     or the line cannot be followed.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     pose: Pose
     duration_s: Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]

@@ -7,12 +7,12 @@ from its present configuration and continues; while there is no path, it waits.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import msgspec
 
 from engine.messages import Message, Pose, Vector3
-from engine.skill import Action
+from engine.skill import Action, Capability
 from engine.skills.collision_options import BlockedPathTimeout
 from engine.skills.motion import PoseMatch, Speed
 
@@ -149,6 +149,8 @@ class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_
     Rejected when the arm is not at the start, or when the path is no longer free and adaptation is disabled.
     """
 
+    capability: ClassVar[Capability] = "trajectory"
+
     plan: PlannedMotion
     adaptation: Adaptation = Adaptation()
     options: PlanOptions = PlanOptions()
@@ -160,6 +162,8 @@ class MoveFree(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_onl
     Rejected with the reason when no path is possible; when only a person or another arm blocks every path,
     the goal is accepted and waits.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     target: MotionTarget
     options: PlanOptions = PlanOptions()

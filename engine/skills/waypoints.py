@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import msgspec
 
 from engine.messages import Message, Pose
-from engine.skill import Action
+from engine.skill import Action, Capability
 from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointMotionResult, PoseMatch, Speed
 
@@ -58,6 +58,8 @@ class FollowWaypoints(Action[WaypointsResult, WaypointsFeedback], frozen=True, k
     configuration nearest to the previous waypoint. Rejected before the motion, with the index of the waypoint and
     the reason, when one is out of reach or needs another configuration of the arm.
     """
+
+    capability: ClassVar[Capability] = "trajectory"
 
     waypoints: Annotated[tuple[Waypoint, ...], msgspec.Meta(min_length=1, max_length=MOST_WAYPOINTS)]
     speed: Speed = 0.5

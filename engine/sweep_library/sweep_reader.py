@@ -383,7 +383,7 @@ def require_simulated(subject: SweepSubject) -> None:
     cell = subject.cell
     for device, driver in cell.document.real_devices.items() if cell is not None else ():
         raise ControlError(
-            f"the {device} is real (driver {driver}): a sweep only simulates",
+            f"{device} is real (driver {driver}): a sweep only simulates",
             where=cell.file if cell is not None else None,
             hint="give the sweep a `cell` whose robots and tools have `driver: sim`",
         )

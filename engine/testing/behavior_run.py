@@ -12,7 +12,7 @@ from engine.document import load_behavior
 from engine.document.cell import load_cell
 from engine.document.faults import load_faults
 from engine.project.cell_runner import CellSetup
-from engine.project.headless_run import CompletedRun, plan_in_cell, run_headless
+from engine.project.headless_run import CompletedRun, plan_in_cell, run_headless, simulated_cell
 from engine.project.run_request import RunRequest
 from engine.runtime.plan import Catalogue
 from engine.runtime.record.recorder import Watcher
@@ -30,6 +30,7 @@ class BehaviorRunner(Protocol):
         inputs: Mapping[str, object] | None = None,
         seed: int | None = None,
         cell: Path | str | None = None,
+        simulate: Sequence[str] = (),
         prepare: Callable[[SkillBus], object] | None = None,
         faults: Path | str | None = None,
         substitutes: Path | str | Mapping[str, StandInFor] | None = None,
@@ -48,6 +49,7 @@ def run_behavior(
     inputs: Mapping[str, object] | None = None,
     seed: int | None = None,
     cell: Path | str | None = None,
+    simulate: Sequence[str] = (),
     prepare: Callable[[SkillBus], object] | None = None,
     faults: Path | str | None = None,
     substitutes: Path | str | Mapping[str, StandInFor] | None = None,
@@ -63,6 +65,7 @@ def run_behavior(
         inputs: Initial userdata.
         seed: Seed of random choices and of the placement noise of parts; without a seed, no placement noise.
         cell: The cell in which it runs; by default the cell that the behavior names.
+        simulate: Devices of the cell that its world simulates instead of their drivers, or `all`.
         prepare: Registers fakes of a test on an empty bus; then no cell is opened.
         faults: A fault document.
         substitutes: Substitutes of nodes: a substitutes document, or by path pattern an outcome, an
@@ -74,7 +77,7 @@ def run_behavior(
         ControlError: it has substitutes, and a robot of the cell is real.
     """
     behavior = load_behavior(Path(file))
-    given = load_cell(Path(cell)) if cell is not None else None
+    given = simulated_cell(behavior, load_cell(Path(cell)) if cell is not None else None, simulate)
     require_no_errors(check_behavior(behavior, catalogue, cell=given))
     if substitutes is not None:
         behavior = with_substitutes(behavior, substitutes)

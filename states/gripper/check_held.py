@@ -8,7 +8,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.skills.gripper import ReadGripper
 from engine.skills.part_label import PartLabel, part_label, wrong_part
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 
 
@@ -16,7 +16,7 @@ class CheckHeld(State, frozen=True, kw_only=True):
     """Check whether the gripper still holds the part that it grasped; `lost` also when it holds another one."""
 
     state_name: ClassVar[str] = "gripper.CheckHeld"
-    capability: ClassVar[str] = "gripper"
+    skills: ClassVar[Skills] = (ReadGripper,)
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
     success: ClassVar[tuple[str, ...]] = ("held",)
     observes: ClassVar[bool] = True

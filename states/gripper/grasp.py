@@ -11,7 +11,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause, MeasuredValue
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
 from engine.skills.part_label import PartLabel, part_label, wrong_part
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 
@@ -39,7 +39,7 @@ class Grasp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "gripper.Grasp"
-    capability: ClassVar[str] = "gripper"
+    skills: ClassVar[Skills] = (GripperGrasp,)
     outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
     success: ClassVar[tuple[str, ...]] = ("held",)
     outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "width_m": float}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from engine.skills.gripper import FingerSpeed, GripperMove, Width
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 
@@ -14,7 +14,7 @@ class Move(State, frozen=True, kw_only=True):
     """Move the fingers of a gripper to an opening, without grasping."""
 
     state_name: ClassVar[str] = "gripper.Move"
-    capability: ClassVar[str] = "gripper"
+    skills: ClassVar[Skills] = (GripperMove,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from engine.skills.gripper import FingerSpeed, GripperOpen
 from engine.skills.part_label import PartLabel
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.gripper.gripper_parameter_types import GripperName, gripper_address
 from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 
@@ -15,7 +15,7 @@ class Open(State, frozen=True, kw_only=True):
     """Open a gripper fully."""
 
     state_name: ClassVar[str] = "gripper.Open"
-    capability: ClassVar[str] = "gripper"
+    skills: ClassVar[Skills] = (GripperOpen,)
     outcomes: ClassVar[tuple[str, ...]] = ("opened", "failed")
     success: ClassVar[tuple[str, ...]] = ("opened",)
 

@@ -8,7 +8,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.skills.hand import ReadHand
 from engine.skills.part_label import PartLabel, part_label, wrong_part
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.hand.hand_parameter_types import HandName, hand_address
 
 
@@ -16,7 +16,7 @@ class CheckHeld(State, frozen=True, kw_only=True):
     """Check whether a hand still holds a part; `lost` also when it holds another one."""
 
     state_name: ClassVar[str] = "hand.CheckHeld"
-    capability: ClassVar[str] = "hand"
+    skills: ClassVar[Skills] = (ReadHand,)
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
     success: ClassVar[tuple[str, ...]] = ("held",)
     observes: ClassVar[bool] = True

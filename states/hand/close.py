@@ -9,7 +9,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause
 from engine.skills.hand import HandClose, HandResult
 from engine.skills.part_label import PartLabel, part_label, wrong_part
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.hand.hand_parameter_types import ClosingTime, HandName, Percent, hand_address
 
 
@@ -21,7 +21,7 @@ class Close(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "hand.Close"
-    capability: ClassVar[str] = "hand"
+    skills: ClassVar[Skills] = (HandClose,)
     outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
     success: ClassVar[tuple[str, ...]] = ("held",)
     outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "closed_percent": float}

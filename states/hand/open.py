@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from engine.skills.hand import HandOpen
 from engine.skills.part_label import PartLabel
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.hand.hand_parameter_types import ClosingTime, HandName, hand_address
 
 
@@ -14,7 +14,7 @@ class Open(State, frozen=True, kw_only=True):
     """Open a hand fully within `time_s`."""
 
     state_name: ClassVar[str] = "hand.Open"
-    capability: ClassVar[str] = "hand"
+    skills: ClassVar[Skills] = (HandOpen,)
     outcomes: ClassVar[tuple[str, ...]] = ("opened", "failed")
     success: ClassVar[tuple[str, ...]] = ("opened",)
 

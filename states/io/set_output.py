@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.skill import Service
 from engine.skills import digital_outputs as outputs
 from engine.skills.digital_outputs import On, OutputNumber, SetGripper, SetLinearAxis, SetToolExchange
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.call_or_fail import call_or_fail
 
 OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
@@ -19,7 +19,7 @@ class SetOutput(State, frozen=True, kw_only=True):
     """Turn an output on or off, by its number (`output`) or by the device connected to it (`device`)."""
 
     state_name: ClassVar[str] = "io.SetOutput"
-    capability: ClassVar[str] = "outputs"
+    skills: ClassVar[Skills] = (outputs.SetOutput, SetToolExchange, SetGripper, SetLinearAxis)
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

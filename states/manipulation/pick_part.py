@@ -13,10 +13,10 @@ from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import angle_between_rad, compose_poses, translate_pose
 from engine.skills.arm_control import Mass
 from engine.skills.gripper import Width
-from engine.skills.motion import ForwardKinematics, Speed
-from engine.skills.planning import BlockedPathTimeout, Margin
+from engine.skills.motion import CartLinTask, ForwardKinematics, Speed
+from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
 from engine.skills.planning_scene import TouchingPair
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.frames import frame_in_world, part_in_world
 from states.gripper.grasp import Force
 from states.hand.hand_parameter_types import Percent
@@ -64,6 +64,7 @@ class PickPart(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "manipulation.PickPart"
+    skills: ClassVar[Skills] = (MoveFree, CartLinTask)
     outcomes: ClassVar[tuple[str, ...]] = ("picked", "missed", "unreachable", "blocked", "failed")
     success: ClassVar[tuple[str, ...]] = ("picked",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

@@ -10,10 +10,10 @@ from msgspec import Meta
 from engine.errors import Cause
 from engine.messages import Pose, Vector3
 from engine.messages.pose_algebra import compose_poses, invert_pose
-from engine.skills.motion import ForwardKinematics, Speed
-from engine.skills.planning import BlockedPathTimeout, Margin
+from engine.skills.motion import CartLinTask, ForwardKinematics, Speed
+from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
 from engine.skills.planning_scene import CONTACT_M, TouchingPair
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.frames import frame_in_world, part_in_world
 from states.manipulation.approach import OPENING_STEPS_M, Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
@@ -37,6 +37,7 @@ class PlacePart(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "manipulation.PlacePart"
+    skills: ClassVar[Skills] = (MoveFree, CartLinTask)
     outcomes: ClassVar[tuple[str, ...]] = ("placed", "missed", "unreachable", "blocked", "failed")
     success: ClassVar[tuple[str, ...]] = ("placed",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from engine.skills import planning
 from engine.skills.planning import BlockedPathTimeout, KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.planned_motion_result import inner_cause_text, is_blocked_timeout
 from states.motion.planned_motion_target import WatchPath
@@ -21,7 +21,7 @@ class ExecutePlan(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.ExecutePlan"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (planning.ExecutePlan,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import CartDMP
 from engine.skills.motion import CartTrapVel
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import NO_OFFSET, Offset, PoseTarget, RobotName, resolve_pose
 from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
 
@@ -21,7 +21,7 @@ class FollowCartDmp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowCartDmp"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (CartTrapVel, CartDMP)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

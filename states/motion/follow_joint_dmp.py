@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import JointDMP
 from engine.skills.motion import JointTrapVel
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import JointTarget, RobotName, resolve_joints
 from states.motion.primitive import ApproachSpeed, JointDmpEntry, TimeScale, resolve_joint_dmp
 
@@ -21,7 +21,7 @@ class FollowJointDmp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowJointDmp"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (JointTrapVel, JointDMP)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -12,7 +12,7 @@ from engine.errors import SkillFailed
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import JointDMP, LearnJointDmp
 from engine.skills.motion import JointTrapVel
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, RecordingEntry, TimeScale
 
@@ -24,7 +24,7 @@ class FollowRecording(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowRecording"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (JointTrapVel, JointDMP)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -12,7 +12,7 @@ from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.waypoints import MOST_WAYPOINTS, BlendDistance, ToolSpeed, Waypoint, WaypointsResult
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 from states.motion.motion_undo import finished_motions, motion_undo_problem, perform_undo_motion
 from states.motion.waypoint_target import WaypointTarget
@@ -26,7 +26,7 @@ class FollowWaypoints(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.FollowWaypoints"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (waypoints.FollowWaypoints,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

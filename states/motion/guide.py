@@ -7,8 +7,9 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
+from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.guiding import DampingShare, GuideArm, GuideDuration, SamplePeriod
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 
 
@@ -20,7 +21,7 @@ class Guide(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.Guide"
-    capability: ClassVar[str] = "guide"
+    skills: ClassVar[Skills] = (GuideArm,)
     outcomes: ClassVar[tuple[str, ...]] = ("finished", "failed")
     success: ClassVar[tuple[str, ...]] = ("finished",)
     outputs: ClassVar[Mapping[str, Any]] = {"samples": int}
@@ -37,6 +38,7 @@ class Guide(State, frozen=True, kw_only=True):
     ] = ""
     sample_s: SamplePeriod = 0.01
     damping: DampingShare = 0.1
+    collisions: PathCollisions = CollisionOptions()
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""
@@ -44,7 +46,13 @@ class Guide(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and wait until the arm holds its position again."""
-        goal = GuideArm(damping=self.damping, duration_s=self.duration_s, record=self.record, sample_s=self.sample_s)
+        goal = GuideArm(
+            damping=self.damping,
+            duration_s=self.duration_s,
+            record=self.record,
+            sample_s=self.sample_s,
+            collisions=self.collisions,
+        )
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded" and end.result is not None:
             return Outcome("finished", {"samples": end.result.samples})

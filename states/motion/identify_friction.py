@@ -10,7 +10,7 @@ from msgspec import Meta
 from engine.skills import identification
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.identification import FrictionAmplitude, JointFrictionEstimate
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 
 
@@ -21,7 +21,7 @@ class IdentifyFriction(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.IdentifyFriction"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (identification.IdentifyFriction,)
     outcomes: ClassVar[tuple[str, ...]] = ("identified", "failed")
     success: ClassVar[tuple[str, ...]] = ("identified",)
     outputs: ClassVar[Mapping[str, Any]] = {"friction": tuple[JointFrictionEstimate, ...]}

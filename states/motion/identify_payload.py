@@ -13,7 +13,7 @@ from engine.messages import Vector3
 from engine.skills import identification
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.identification import PayloadAmplitude
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 
 
@@ -25,7 +25,7 @@ class IdentifyPayload(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.IdentifyPayload"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (identification.IdentifyPayload,)
     outcomes: ClassVar[tuple[str, ...]] = ("identified", "uncertain", "failed")
     success: ClassVar[tuple[str, ...]] = ("identified",)
     outputs: ClassVar[Mapping[str, Any]] = {

@@ -13,7 +13,7 @@ from engine.skills import planning
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import BlockedPathTimeout, KeepOrientation, Margin, MotionTarget, PlannerName, PlanningTime
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import NO_OFFSET, Offset, RetractDistance, RobotName
 from states.motion.planned_motion_result import inner_cause_text, is_blocked_timeout
 from states.motion.planned_motion_target import (
@@ -47,7 +47,7 @@ class MoveFree(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveFree"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (planning.MoveFree,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "no_way", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}

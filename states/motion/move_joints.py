@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import JointTrapVel, Speed
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import JointTarget, RobotName, joints_label, resolve_joints
 from states.motion.motion_undo import motion_undo_problem, move_joints_back
 from states.motion.static_target import static_joint_target
@@ -19,7 +19,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
     """Move an arm in joint space, all joints synchronized, with a trapezoidal velocity profile."""
 
     state_name: ClassVar[str] = "motion.MoveJoints"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (JointTrapVel,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

@@ -11,7 +11,7 @@ from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import CartLinTask, CartMotionResult, ForwardKinematics
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.motion.line_duration import SHORTEST_S, line_duration_s
 from states.motion.motion_target import (
     NO_OFFSET,
@@ -39,7 +39,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveLinear"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (CartLinTask,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

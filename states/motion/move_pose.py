@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.motion import CartTrapVel, PoseMatch, Speed
-from engine.state import ActivationRecord, Context, Outcome, State, goal_cause
+from engine.state import ActivationRecord, Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
 from states.motion.motion_undo import motion_undo_problem, move_joints_back
 from states.motion.static_target import static_pose_target
@@ -23,7 +23,7 @@ class MovePose(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MovePose"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (CartTrapVel,)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
 

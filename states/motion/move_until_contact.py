@@ -22,7 +22,7 @@ from engine.skills.contact import (
     PeakForce,
     SurfaceStiffness,
 )
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.motion.motion_target import RobotName
 
 
@@ -34,7 +34,7 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.MoveUntilContact"
-    capability: ClassVar[str] = "trajectory"
+    skills: ClassVar[Skills] = (contact.MoveUntilContact,)
     outcomes: ClassVar[tuple[str, ...]] = ("contact", "no_contact", "failed")
     success: ClassVar[tuple[str, ...]] = ("contact",)
     outputs: ClassVar[Mapping[str, Any]] = {"travelled_m": float, "force_n": float, "peak_n": float}

@@ -15,7 +15,7 @@ from engine.skills.collision_options import CollisionOptions, PathCollisions
 from engine.skills.dmp import CartAdmitDMP, Compliance
 from engine.skills.entries import ReadEntry, WriteEntry
 from engine.skills.motion import CartTrapVel
-from engine.state import Context, Outcome, State, goal_cause
+from engine.state import Context, Outcome, Skills, State, goal_cause
 from engine.store import decode_entry
 from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
@@ -30,7 +30,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.PressAlongDmp"
-    capability: ClassVar[str] = "force"
+    skills: ClassVar[Skills] = (CartTrapVel, CartAdmitDMP)
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
     success: ClassVar[tuple[str, ...]] = ("reached",)
     outputs: ClassVar[Mapping[str, Any]] = {"force_error_rms_n": float, "force_error_max_n": float}

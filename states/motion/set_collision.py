@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from engine.skills.arm_control import JointRow, SetCollisionBehavior
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.call_or_fail import call_or_fail
 from states.motion.motion_target import RobotName
 
@@ -21,7 +21,7 @@ class SetCollision(State, frozen=True, kw_only=True):
     """Set the external torque or force above which the arm stops; without either, it never stops on contact."""
 
     state_name: ClassVar[str] = "motion.SetCollision"
-    capability: ClassVar[str] = "reflex"
+    skills: ClassVar[Skills] = (SetCollisionBehavior,)
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

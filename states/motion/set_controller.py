@@ -8,7 +8,7 @@ from msgspec import Meta
 
 from engine.skills import arm_control
 from engine.skills.arm_control import ControllerName
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.call_or_fail import call_or_fail
 from states.motion.motion_target import RobotName
 
@@ -17,7 +17,7 @@ class SetController(State, frozen=True, kw_only=True):
     """Switch the arm to joint impedance or Cartesian impedance control; the switch is bumpless."""
 
     state_name: ClassVar[str] = "motion.SetController"
-    capability: ClassVar[str] = "torque"
+    skills: ClassVar[Skills] = (arm_control.SetController,)
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

@@ -9,7 +9,7 @@ from msgspec import Meta
 from engine.messages import Vector6
 from engine.skill import Service
 from engine.skills.arm_control import ControlSettings, Damping, JointRow, SetCartesianImpedance, SetJointImpedance
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, Skills, State
 from states.call_or_fail import call_or_fail
 from states.motion.motion_target import RobotName
 
@@ -21,7 +21,7 @@ class SetImpedance(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "motion.SetImpedance"
-    capability: ClassVar[str] = "torque"
+    skills: ClassVar[Skills] = (SetJointImpedance, SetCartesianImpedance)
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 

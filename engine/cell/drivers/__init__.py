@@ -4,17 +4,17 @@ Drivers are registered as `flexcell.drivers`, emulators as `flexcell.emulators`;
 a check or a schema loads none of it. A new device touches no file of the engine.
 """
 
-from engine.cell.drivers.capabilities import Capability
 from engine.cell.drivers.cell_schema import cell_schema_text
+from engine.cell.drivers.device_context import DeviceContext
 from engine.cell.drivers.device_report import DeviceReport, RoundTrip
 from engine.cell.drivers.driver import DrivenDevice, Driver, DriverOptions
-from engine.cell.drivers.driver_assignments import AssignedDriver, assigned_drivers
-from engine.cell.drivers.driver_registry import installed_drivers
+from engine.cell.drivers.driver_assignments import AssignedDriver, assigned_drivers, digital_outputs, written_drivers
+from engine.cell.drivers.driver_registry import installed_driver, installed_drivers
 from engine.cell.drivers.emulator_registry import Emulator, EmulatorOptions, Ready, emulator, installed_emulators
 
 __all__ = [
     "AssignedDriver",
-    "Capability",
+    "DeviceContext",
     "DeviceReport",
     "DrivenDevice",
     "Driver",
@@ -25,7 +25,10 @@ __all__ = [
     "RoundTrip",
     "assigned_drivers",
     "cell_schema_text",
+    "digital_outputs",
     "emulator",
+    "installed_driver",
     "installed_drivers",
     "installed_emulators",
+    "written_drivers",
 ]

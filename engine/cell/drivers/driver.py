@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import importlib
+import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Protocol, cast
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, cast
 
-from engine.cell.drivers.capabilities import CAPABILITIES, SKILL_CAPABILITIES, Capability
+from engine.cell.drivers.device_context import DeviceContext
 from engine.cell.drivers.device_report import DeviceReport
 from engine.clock import Clock
 from engine.document import StrictModel
 from engine.robot import Reconnectable, Robot
+from engine.skill import CAPABILITIES, Capability, required_capability
+
+_log = logging.getLogger("flexcell.devices")
 
 
 class DriverOptions(StrictModel, frozen=True, kw_only=True, tag_field="kind"):
@@ -31,7 +35,7 @@ class DrivenDevice(Robot, Reconnectable, Protocol):
 
 
 DeviceMaker = Callable[..., DrivenDevice]
-"""Receives the options, `name` (the bus namespace) and `clock`, and returns the device, not yet connected."""
+"""Receives the options, `name` (the bus namespace), `clock` and `context`; returns the device, not yet connected."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,10 +48,16 @@ class Driver:
         models: Names of the models that it can drive; empty if it can drive any.
         options: The keys of `driver:` in the cell document.
         capabilities: What it can do; a skill beyond them is refused with the reason.
+        missing_skills: Skills that it cannot do in spite of its capabilities, with the reasons.
+        enabling: What enabling the device does at it, and what a person has to do there, in plain sentences.
+        digital_outputs: Returns how many outputs the controller has with these options; None where the model of the
+            arm says it.
         ports: The default TCP ports of the device, by what they are for.
         proven: What was tested against what, and that it never ran on hardware, if so.
         page: Path of its documentation.
         device: Where the maker of its device is found, `module:NAME`.
+        capabilities_with: Returns what it can do with some options, where that depends on them; None where it does not.
+        not_captured: Which of its connections `--capture` cannot reach, and what can; empty if it has all.
     """
 
     kind: str
@@ -58,9 +68,20 @@ class Driver:
     page: str
     device: str
     models: frozenset[str] = frozenset()
+    missing_skills: Mapping[str, str] = field(default_factory=dict[str, str])
+    enabling: str = "Permits motion."
+    digital_outputs: Callable[[Any], int] | None = None
     ports: Mapping[str, int]
+    not_captured: str = ""
+    capabilities_with: Callable[[Any], frozenset[Capability]] | None = None
 
-    def new_device(self, options: DriverOptions, *, name: str, clock: Clock) -> DrivenDevice:
+    def configured(self, options: DriverOptions) -> Driver:
+        """Return the driver with what it can do with these options."""
+        if self.capabilities_with is None:
+            return self
+        return replace(self, capabilities=self.capabilities_with(options))
+
+    def new_device(self, options: DriverOptions, *, name: str, clock: Clock, context: DeviceContext) -> DrivenDevice:
         """Return the device, not yet connected.
 
         Raises:
@@ -68,16 +89,17 @@ class Driver:
         """
         module, _, attribute = self.device.partition(":")
         maker = cast("DeviceMaker", getattr(importlib.import_module(module), attribute))
-        return maker(options, name=name, clock=clock)
+        if context.capture is not None and self.not_captured:
+            _log.warning("the capture of %s is not complete: %s", name, self.not_captured)
+        return maker(options, name=name, clock=clock, context=context)
 
-    def lacks(self, capability: str) -> str:
-        """Return why something that needs a capability is refused; empty if the driver has it."""
-        if capability in self.capabilities:
+    def lacks(self, capability: Capability | None) -> str:
+        """Return why something that needs a capability is refused; empty if the driver has it, or None is needed."""
+        if capability is None or capability in self.capabilities:
             return ""
-        needed = next((words for name, words in CAPABILITIES.items() if name == capability), "")
         has = ", ".join(words for name, words in CAPABILITIES.items() if name in self.capabilities)
-        return f"the driver {self.kind} has no {needed}, only {has or 'readings'}" if needed else ""
+        return f"the driver {self.kind} has no {CAPABILITIES[capability]}, only {has or 'readings'}"
 
     def lacks_for_skill(self, skill: str) -> str:
         """Return why a skill is refused, by its name on the bus; empty if the driver can do it."""
-        return self.lacks(SKILL_CAPABILITIES.get(skill, ""))
+        return self.missing_skills.get(skill, "") or self.lacks(required_capability(skill))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from engine.cell.drivers.driver import Driver, DriverOptions
 from engine.cell.drivers.driver_registry import driver_options, installed_driver
 from engine.document import Cell, DataPath
-from engine.errors import CellError
+from engine.errors import CellError, FlexcellError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +21,11 @@ class AssignedDriver:
     model: str
     path: DataPath
     tool: bool
+
+    @property
+    def written_name(self) -> str:
+        """The name of the device in the document: `left`, or `left/gripper` of any tool."""
+        return f"{self.robot}/gripper" if self.tool else self.robot
 
     def driver(self) -> Driver:
         """Return the driver.
@@ -58,15 +63,35 @@ class AssignedDriver:
 
 def assigned_drivers(cell: Cell) -> Iterator[AssignedDriver]:
     """Yield the devices of a cell that are not simulated and have a driver, in the order of the document."""
+    yield from (each for each in written_drivers(cell) if each.written_name not in cell.simulated)
+
+
+def written_drivers(cell: Cell) -> Iterator[AssignedDriver]:
+    """Yield the devices for which the document names a driver, also those that are simulated instead."""
+    kinds = {**cell.document.real_devices, **cell.simulated}
     for name, robot in cell.document.robots.items():
-        if not robot.simulated:
+        if name in kinds:
             path: DataPath = ("robots", name, "driver")
-            yield AssignedDriver(
-                cell=cell, robot=name, kind=robot.driver_kind, model=robot.model, path=path, tool=False
-            )
-        gripper = robot.gripper
-        if gripper is not None and gripper.driver_kind:
+            yield AssignedDriver(cell=cell, robot=name, kind=kinds[name], model=robot.model, path=path, tool=False)
+        gripper, tool = robot.gripper, f"{name}/gripper"
+        if gripper is not None and tool in kinds:
             path = ("robots", name, "gripper", "driver")
-            yield AssignedDriver(
-                cell=cell, robot=name, kind=gripper.driver_kind, model=gripper.model, path=path, tool=True
-            )
+            yield AssignedDriver(cell=cell, robot=name, kind=kinds[tool], model=gripper.model, path=path, tool=True)
+
+
+def digital_outputs(cell: Cell, robot: str, *, of_model: int) -> int:
+    """Return how many digital outputs the controller of a robot has.
+
+    Its driver says it, also while the robot is simulated instead; without a driver, or with one that leaves it to the
+    model or cannot be loaded, it is `of_model`.
+    """
+    kind = {**cell.document.real_devices, **cell.simulated}.get(robot, "")
+    if not kind:
+        return of_model
+    try:
+        driver = installed_driver(kind)
+        if driver.digital_outputs is None:
+            return of_model
+        return driver.digital_outputs(driver_options(driver, cell.source, ("robots", robot, "driver")))
+    except FlexcellError:
+        return of_model  # the check of the cell reports why

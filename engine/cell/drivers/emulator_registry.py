@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import msgspec
 
+from engine.cell.drivers.driver import DriverOptions
 from engine.document import StrictModel
 from engine.errors import FlexcellError, RegistryError
 from engine.registry import load_factory, registered_names
@@ -33,14 +34,17 @@ class Emulator:
         kind: Its name.
         summary: What it emulates and what not, in one line.
         options: Its options.
-        serve: Where its coroutine function is found, `module:NAME`: it receives options and `ready`, serves, and
-            ends when it is cancelled.
+        serve: Where its coroutine function is found, `module:NAME`: it receives options and `ready`, and `plant` if
+            it shall move joints of others; it serves, and ends when it is cancelled.
+        for_driver: Where the function is found that returns its options for the options of the driver of this name
+            and the name of the device's model; empty for an emulator that has no place in an emulated cell.
     """
 
     kind: str
     summary: str
     options: type[EmulatorOptions]
     serve: str
+    for_driver: str = ""
 
     def read_options(self, given: Mapping[str, str]) -> EmulatorOptions:
         """Return the options given as texts.
@@ -65,10 +69,25 @@ class Emulator:
             name: f"{entry.get('default', '')!s}: {entry.get('description', '')}" for name, entry in properties.items()
         }
 
-    def run(self, options: EmulatorOptions, ready: Ready) -> Coroutine[Any, Any, None]:
-        """Return the coroutine that serves until it is cancelled."""
-        module, _, attribute = self.serve.partition(":")
-        return cast("Coroutine[Any, Any, None]", getattr(importlib.import_module(module), attribute)(options, ready))
+    def options_for(self, driver: DriverOptions, *, model: str) -> EmulatorOptions:
+        """Return the options of the emulated device that a driver with these options is for.
+
+        Raises:
+            FlexcellError: it belongs to no driver, or cannot be where the options say.
+        """
+        if not self.for_driver:
+            hint = f"simulate this device, or emulate it alone: flexcell emulate {self.kind}"
+            raise FlexcellError(f"a device of kind {self.kind} cannot be part of an emulated cell", hint=hint)
+        return cast("EmulatorOptions", _found(self.for_driver)(driver, model))
+
+    def run(self, options: EmulatorOptions, ready: Ready, **plant: object) -> Coroutine[Any, Any, None]:
+        """Return the coroutine that serves until it is cancelled; with a `plant` it moves joints of others."""
+        return cast("Coroutine[Any, Any, None]", _found(self.serve)(options, ready, **plant))
+
+
+def _found(place: str) -> Callable[..., object]:
+    module, _, attribute = place.partition(":")
+    return cast("Callable[..., object]", getattr(importlib.import_module(module), attribute))
 
 
 def emulator(kind: str) -> Emulator:

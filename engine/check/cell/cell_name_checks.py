@@ -89,14 +89,9 @@ class CellNameCheck:
     def _beyond_driver(self, subject: AnalyzedBehavior, use: _Use) -> Iterator[Finding]:
         """Find a state that needs more than the driver of its device can do."""
         signature = subject.signature(use.placed.node)
-        if (
-            signature is None
-            or not signature.state.capability
-            or not isinstance(use.value, str)
-            or use.owner is not None
-        ):
+        if signature is None or not isinstance(use.value, str) or use.owner is not None:
             return
-        reason = self.names.beyond_driver(use.kind, use.value, signature.state.capability)
+        reason = self.names.beyond_driver(use.kind, use.value, signature.state.skills)
         if reason:
             message = f"{signature.name} cannot be executed by `{use.value}`: {reason}"
             hint = "use another device, or simulate it with `driver: sim`"

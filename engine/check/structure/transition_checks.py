@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
 from engine.document.nodes.node_spec import NodeSpec
+from engine.document.state_catalogue import StateCatalogue
 from engine.errors import FlexcellError, ModuleNotAllowed
 from engine.suggestions import did_you_mean
 
@@ -17,6 +18,8 @@ def check_transitions(subject: AnalyzedBehavior) -> Iterator[Finding]:
         node = placed.node
         if node.state is not None and node.state in subject.unknown:
             yield _unknown(subject, placed, node.state, subject.unknown[node.state])
+        elif node.state is not None:
+            yield from _outdated(subject, placed)
         if node.retry is not None or node.autonomy or node.success or node.foreach is not None:
             yield from _check_named_outcomes(subject, placed)
         if node.machine is not None or node.priority is not None:
@@ -30,6 +33,16 @@ def _unknown(subject: AnalyzedBehavior, placed: NodeAt, name: str, error: Flexce
     message = f"there is no state `{name}`"
     hint = error.hint or "" if error.message == message else str(error)
     return subject.finding("unknown-state", message, placed.path, "state", hint=hint)
+
+
+def _outdated(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
+    signature = subject.signature(placed.node)
+    catalogue = subject.catalogue
+    if signature is None or not isinstance(catalogue, StateCatalogue):
+        return
+    error = catalogue.outdated_class(signature.state)
+    if error is not None:
+        yield subject.finding("outdated-state", error.message, placed.path, "state", hint=error.hint or "")
 
 
 def _check_named_outcomes(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:

@@ -19,12 +19,13 @@ from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, 
 from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.document.cell import Cell, load_cell
 from engine.document.python_name import is_python_name
+from engine.document.simulated_devices import with_simulated_devices
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import ControlError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.project.cell_runner import CellRunner, CellSetup
 from engine.project.resume_plan import ResumePlan, plan_resume
-from engine.project.run_request import require_simulation
+from engine.project.run_request import require_no_new_real_devices, require_simulation
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.runtime.history.resume import RERUN, ResumeDecisionRequired
@@ -155,7 +156,10 @@ def _known_states(file: Path, *, named: bool) -> StateCatalogue:
 
 def _read_cell(file: Path | None, found: RecordedRun) -> Cell | None:
     path = file or (Path(found.origin.cell) if found.origin.cell is not None else None)
-    return load_cell(path) if path is not None else None
+    # A run that was simulated must not go on with real arms.
+    cell = with_simulated_devices(load_cell(path), found.origin.simulated) if path is not None else None
+    require_no_new_real_devices(found, cell)
+    return cell
 
 
 def _read_answers(given: Sequence[str]) -> dict[str, str]:

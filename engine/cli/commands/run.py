@@ -12,11 +12,22 @@ import typer
 
 from engine.cell.open_cell import OpenCell
 from engine.check import Finding, check_given, check_stored
+from engine.cli.capture_option import Capture, capture_folder
 from engine.cli.exit_code import ExitCode
-from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, reload_plan
+from engine.cli.inputs import (
+    Simulate,
+    behavior_source,
+    read_behavior,
+    read_cell,
+    read_inputs,
+    read_parameters,
+    read_simulated_cell,
+    reload_plan,
+)
 from engine.cli.output.output_file import prepare
 from engine.cli.output.run_junit import write_run_junit
 from engine.cli.output.run_report import report_run
+from engine.cli.store_access import author_name
 from engine.cli.terminal.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.terminal.run_execution import NO_JOURNAL, ExecutionResult, RunSetup, execute_run, new_relay
 from engine.coverage import CoverageCollector
@@ -27,11 +38,25 @@ from engine.document.substitutes import load_substitutes
 from engine.errors import DocumentError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.project.cell_runner import CellRunner, CellSetup, PreparedRun
-from engine.project.run_request import RunRequest, RunStart, require_simulation, start_at
+from engine.project.run_request import (
+    RunRequest,
+    RunStart,
+    require_no_new_real_devices,
+    require_simulation,
+    start_at,
+)
 from engine.recording import DEFAULT_RATE_HZ, RecordingOptions, collect_documents
 from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.runtime.plan import Catalogue, Plan, new_plan
+from engine.skills.devices import LEAST_REASON, EnableDevice
+
+
+def _in_words(reason: str | None) -> str | None:
+    """Return why motion is permitted; raises BadParameter where nothing is said."""
+    if reason is not None and len(reason.strip()) < LEAST_REASON:
+        raise typer.BadParameter("say in words why it is permitted: it is logged")
+    return reason
 
 
 def run(
@@ -39,6 +64,7 @@ def run(
     cell: Annotated[
         Path | None, typer.Option(help="Cell in which it runs; by default the cell that the behavior names.")
     ] = None,
+    simulate: Simulate = None,
     parameter: Annotated[
         list[str] | None,
         typer.Option("-p", "--parameter", help="Parameter of the behavior, NAME=VALUE; may be repeated."),
@@ -73,6 +99,14 @@ def run(
     at: Annotated[
         str | None, typer.Option(help="With --from: node to start at; by default the state entered last.")
     ] = None,
+    enable: Annotated[
+        str | None,
+        typer.Option(
+            help="Permit motion of all real devices of the cell first, with this reason for the log.",
+            callback=_in_words,
+        ),
+    ] = None,
+    capture: Capture = None,
     operator: Operator = False,
     autonomy: Autonomy = None,
     operator_loss: Loss = "hold",
@@ -120,7 +154,7 @@ def run(
     prepare(events, record, junit, coverage)
     catalogue = load_states(file)
     recorded = _read_recorded(from_, at, journal)
-    named = _named_cell(cell, recorded)
+    named = read_simulated_cell(_named_cell(cell, recorded), file, simulate or _simulated_before(recorded))
     behavior = whole = read_valid_behavior(file, catalogue, cell=named, given=parameter or ())
     if substitutes is not None:
         behavior = behavior.with_substitutes(load_substitutes(substitutes))
@@ -137,6 +171,8 @@ def run(
     start = _read_start(recorded, at, plan)
     cell_spec = named or read_cell(None, behavior)
     require_simulation(plan, cell_spec, allowed=substitute_on_robots)
+    if recorded is not None:
+        require_no_new_real_devices(recorded[0], cell_spec)
     parameters = read_parameters(parameter or [], behavior.parameters)
     if start is not None and recorded is not None:
         parameters = start.parameters(plan, parameters)
@@ -164,6 +200,8 @@ def run(
             cell=cell_spec,
             seed=seed,
             store=store,
+            enabling=EnableDevice(reason=enable, by=author_name(None)) if enable else None,
+            capture=capture_folder(capture),
             relay=new_relay(cell_spec, virtual=virtual),
             journal=journal if journal != NO_JOURNAL else None,
             recording=RecordingOptions(
@@ -230,6 +268,11 @@ def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: 
     elif earlier.world is None and earlier.origin.cell is not None:
         sys.stderr.write("flexcell: the cell is not restored: the journal holds no state of its world\n")
     return start
+
+
+def _simulated_before(recorded: tuple[RecordedRun, int] | None) -> tuple[str, ...]:
+    """Return the devices that were simulated in the run to start from."""
+    return recorded[0].origin.simulated if recorded is not None else ()
 
 
 def _named_cell(file: Path | None, recorded: tuple[RecordedRun, int] | None) -> Cell | None:

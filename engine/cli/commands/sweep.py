@@ -16,7 +16,19 @@ from engine.cli.failure_search import report_search, require_no_search, search_e
 from engine.cli.output.output_file import prepare, write
 from engine.cli.output.search_output import SearchPrinter
 from engine.cli.output.sweep_output import SweepPrinter, write_github_summary, write_sweep_junit
-from engine.cli.sweep_arguments import Cell, Design, File, Method, Parameter, Results, Runs, Search, Seed, Vary
+from engine.cli.sweep_arguments import (
+    Cell,
+    Design,
+    File,
+    Method,
+    Parameter,
+    Results,
+    Runs,
+    Search,
+    Seed,
+    Simulate,
+    Vary,
+)
 from engine.cli.sweep_choice import existing_results
 from engine.cli.sweep_execution_options import ClusterAddress, execution_options
 from engine.cli.sweep_options import SweepOverrides, read_sweep
@@ -97,6 +109,7 @@ def run(
     method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
+    simulate: Simulate = None,
     parameter: Parameter = None,
     stop_after: StopAfter = None,
     confidence: Confidence = None,
@@ -148,6 +161,7 @@ def run(
         design=design,
         seed=seed,
         cell=cell,
+        simulate=simulate or (),
         parameters=tuple(parameter or ()),
         confidence=confidence,
         search=search,
@@ -186,6 +200,7 @@ def report_saved(
     method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
+    simulate: Simulate = None,
     parameter: Parameter = None,
     stop_after: StopAfter = None,
     confidence: Confidence = None,
@@ -208,6 +223,7 @@ def report_saved(
         design=design,
         seed=seed,
         cell=cell,
+        simulate=simulate or (),
         parameters=tuple(parameter or ()),
         confidence=confidence,
         search=search,

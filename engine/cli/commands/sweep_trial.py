@@ -11,7 +11,19 @@ import typer
 from engine.cli.exit_code import ExitCode
 from engine.cli.output.output_file import prepare, write
 from engine.cli.output.shrink_output import show_shrinking, shrunk_text
-from engine.cli.sweep_arguments import Cell, Design, File, Method, Parameter, Results, Runs, Search, Seed, Vary
+from engine.cli.sweep_arguments import (
+    Cell,
+    Design,
+    File,
+    Method,
+    Parameter,
+    Results,
+    Runs,
+    Search,
+    Seed,
+    Simulate,
+    Vary,
+)
 from engine.cli.sweep_choice import chosen_result
 from engine.cli.sweep_options import SweepOverrides
 from engine.sweep import Trials
@@ -31,6 +43,7 @@ def rerun(
     method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
+    simulate: Simulate = None,
     parameter: Parameter = None,
     results: Results = DEFAULT_RESULTS,
     record: Annotated[Path | None, typer.Option(help="Record the run to this MCAP file.")] = None,
@@ -43,6 +56,7 @@ def rerun(
         design=design,
         seed=seed,
         cell=cell,
+        simulate=simulate or (),
         parameters=tuple(parameter or ()),
         search=search,
         method=method,
@@ -65,6 +79,7 @@ def shrink(
     method: Method = None,
     seed: Seed = None,
     cell: Cell = None,
+    simulate: Simulate = None,
     parameter: Parameter = None,
     results: Results = DEFAULT_RESULTS,
     same: Annotated[
@@ -85,6 +100,7 @@ def shrink(
         design=design,
         seed=seed,
         cell=cell,
+        simulate=simulate or (),
         parameters=tuple(parameter or ()),
         search=search,
         method=method,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -24,6 +25,8 @@ from engine.runtime.run_options import RunOptions
 from engine.suggestions import did_you_mean
 
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
+_BEHAVIOR = "behavior"
+"""How the scope of the behavior itself is called."""
 _RESTING = frozenset({"gate", "pause_confirmed", "run_ended"})
 """The tags of the events after which a run may rest."""
 _PRINTED = frozenset({"outcome_requested", "gate", "pause_confirmed", "stepped_back", "operator"})
@@ -244,6 +247,27 @@ def _autonomy(console: OperatorConsole, words: Sequence[str]) -> None:
     console.run.control.set_autonomy(level)
 
 
+def _set(console: OperatorConsole, words: Sequence[str]) -> None:
+    control = console.run.control
+    scoped = len(words) > 3 and words[-2] == "in"
+    text = " ".join(words[1:-2] if scoped else words[1:])
+    try:
+        value = json.loads(text)
+    except ValueError:
+        raise _UsageError(
+            f"a key and a value as JSON are required, as in `set {words[0] if words else 'n'} 3`"
+        ) from None
+    if scoped:
+        scope = "" if words[-1] == _BEHAVIOR else words[-1]
+    else:
+        scopes = control.scopes_with(words[0])
+        if len(scopes) > 1:
+            places = ", ".join(each or _BEHAVIOR for each in scopes)
+            raise ControlError(f"several containers have a key {words[0]!r}: {places}", hint="add `in CONTAINER`")
+        scope = next(iter(scopes), "")
+    control.set_userdata(scope, words[0], value)
+
+
 def _break(console: OperatorConsole, words: Sequence[str]) -> None:
     control = console.run.control
     if not words:
@@ -350,6 +374,7 @@ COMMANDS: Mapping[str, _Command] = {
     "force": _Command("force PATH OUTCOME", "end a node with this outcome", _force),
     "repeat": _Command("repeat PATH", "run a node again", _repeat),
     "answer": _Command("answer [PATH]", "accept a requested outcome", _answer),
+    "set": _Command("set KEY JSON [in CONTAINER]", "replace a value of the userdata of a paused run", _set),
     "autonomy": _Command("autonomy off|low|high|full", "outcomes that pass without a question", _autonomy),
     "reload": _Command("reload [preempt]", "continue with the current file", _reload),
     "where": _Command("where", "show the state of the run", _where),

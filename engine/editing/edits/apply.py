@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine.editing.edits import edit, grouping, transition_edits, ungrouping
+from engine.editing.edits import edit, grouping, transition_edits, type_replacement, ungrouping
 from engine.editing.edits import field_edits as fields
 from engine.editing.edits import node_edits as nodes
 from engine.editing.edits import node_insertion as adding
 from engine.editing.edits.edit_session import EditSession
+from engine.editing.edits.type_losses import UnacceptedLosses
 from engine.editing.project_context import ProjectContext
 from engine.editing.text.draft import Draft, EditRefused
 from engine.editing.text.outline import Outline
@@ -31,6 +32,7 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
     edit.SetPositions: fields.set_positions,
     edit.GroupNodes: grouping.group,
     edit.UngroupNode: ungrouping.ungroup,
+    edit.ReplaceType: type_replacement.replace_type,
     edit.DuplicateNodes: adding.duplicate,
     edit.PasteNodes: adding.paste,
     edit.SetDocument: fields.set_document,
@@ -40,11 +42,12 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class EditRefusal:
-    """Why no edit was applied; `index` is the edit that failed."""
+    """Why no edit was applied; `index` is the edit that failed, `losses` are those that it did not accept."""
 
     message: str
     hint: str
     index: int
+    losses: tuple[edit.TypeLoss, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,9 +96,10 @@ def apply_edits_to_draft(
         changed = session.changed()
         made = draft.rewritten()
     except (EditRefused, DocumentError) as error:
+        at = min(index, max(0, len(edits) - 1))
+        losses = error.losses if isinstance(error, UnacceptedLosses) else ()
         return EditResult(
-            text=text,
-            refused=EditRefusal(message=error.message, hint=error.hint or "", index=min(index, max(0, len(edits) - 1))),
+            text=text, refused=EditRefusal(message=error.message, hint=error.hint or "", index=at, losses=losses)
         )
     if len(made.given) > MAX_TEXT:
         refusal = EditRefusal(

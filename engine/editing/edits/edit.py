@@ -138,6 +138,28 @@ class UngroupNode(Edit, frozen=True, kw_only=True, tag="ungroup"):
     path: NodePath
 
 
+class TypeLoss(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What another type of a node cannot keep: where it is, what it is, its value as JSON, and why it does not fit."""
+
+    path: NodePath
+    item: str
+    value: str
+    reason: str
+
+
+class ReplaceType(Edit, frozen=True, kw_only=True, tag="replace_type"):
+    """Give nodes another type in place; what fits is kept.
+
+    `kind` is state, behavior, or that of a container or part of a tree; `runs` is what a state or behavior runs.
+    What does not fit is removed, but only if it is in `accepted`; otherwise the edit is refused with all `losses`.
+    """
+
+    paths: tuple[NodePath, ...]
+    kind: str
+    runs: str = ""
+    accepted: Annotated[tuple[TypeLoss, ...], Meta(max_length=10_000)] = ()
+
+
 class DuplicateNodes(Edit, frozen=True, kw_only=True, tag="duplicate"):
     """Insert copies of nodes next to them; transitions among them connect the copies."""
 
@@ -182,6 +204,7 @@ AnyEdit = (
     | SetPositions
     | GroupNodes
     | UngroupNode
+    | ReplaceType
     | DuplicateNodes
     | PasteNodes
     | SetDocument

@@ -18,10 +18,12 @@ from engine.editing.text.draft import Draft
 from engine.editing.text.outline import Outline
 from engine.errors import DocumentError, FlexcellError
 from engine.host.child_process import set_parent_death_signal
+from engine.library.state_reloading import StateReloading
 from engine.registry import load_states
 from engine.runtime.plan import Catalogue
 
 _NICER_BY = 10
+_Loaded = tuple[Catalogue, StateReloading]
 
 
 def main() -> None:
@@ -30,19 +32,22 @@ def main() -> None:
     set_parent_death_signal(connection)
     # Moving arms, and the response to the next edit, have priority.
     os.nice(_NICER_BY)
-    catalogues: dict[str, Catalogue] = {}
+    catalogues: dict[str, _Loaded] = {}
     with connection.makefile("rb") as requests:
         for line in requests:
             request = msgspec.json.decode(line, type=TargetRequest)
             connection.sendall(msgspec.json.encode(_answered(request, catalogues)) + b"\n")
 
 
-def _answered(request: TargetRequest, catalogues: dict[str, Catalogue]) -> TargetFindings:
+def _answered(request: TargetRequest, catalogues: dict[str, _Loaded]) -> TargetFindings:
     project = Path(request.project)
     try:
         if request.project not in catalogues:
-            catalogues[request.project] = load_states(project)
-        return target_findings(request.text, Path(request.file), project, catalogues[request.project])
+            catalogue = load_states(project)
+            catalogues[request.project] = (catalogue, StateReloading(project, catalogue))
+        catalogue, reloading = catalogues[request.project]
+        reloading.load()
+        return target_findings(request.text, Path(request.file), project, catalogue)
     except FlexcellError as error:
         return TargetFindings(problem=str(error))
 

@@ -99,6 +99,10 @@ def _matched(
     if len(left) == len(fresh):
         # Keys of which only the name has changed.
         found |= {key: own for key, own in zip(fresh, left, strict=True) if _says(own, value[key])}
+    is_one = len(left) == len(fresh) == 1 and isinstance(left[0].value, Scalar)
+    if is_one and those.index(left[0]) == list(value).index(fresh[0]):
+        # One entry in the place of another: the comments beside it are about both. A collection takes its own along.
+        found[fresh[0]] = left[0]
     return [(key, each, found.get(key)) for key, each in value.items()]
 
 

@@ -210,7 +210,7 @@ class TextRewriter:
     ) -> str:
         """Return the lines of one entry of a block at a position, with the comments above it."""
         elsewhere = was is None
-        was = was or self._moved(value, mapping=key is not None)
+        was = was or self._moved(value)
         if was is None:
             return " " * place.column + self._entry(key, value, place)
         home, member = was
@@ -234,18 +234,18 @@ class TextRewriter:
             return was.data is value and bool(value) and self._is_whole(was, was.data)
         return is_unchanged(was.value, value)
 
-    def _moved(self, value: object, *, mapping: bool) -> tuple[Collection, Member] | None:
+    def _moved(self, value: object) -> tuple[Collection, Member] | None:
         """Return the original entry of a moved value, whose comments move with it."""
         if not isinstance(value, dict | list):
             return None
         origin = self._source(cast("Plain", value))
         home = self._home_of(origin) if origin is not None else None
-        return home if home is not None and not home[0].flow and isinstance(home[0].data, dict) == mapping else None
+        return home if home is not None and not home[0].flow else None
 
     def _brings_comments(self, value: Plain) -> bool:
         """Return whether entries with comments were moved into a new value."""
         for each in _inside(value):
-            moved = self._moved(each, mapping=isinstance(value, dict))
+            moved = self._moved(each)
             if moved is not None:
                 text, member = moved[0].origin.text, moved[1]
                 if "#" in text[member.start : member.at] + text[member.value.end : member.stop]:
@@ -270,6 +270,9 @@ class TextRewriter:
             return name + self._scalar_entry(home, value, old, gap, tail)
         was_block = isinstance(old, Collection) and not old.flow
         stays = isinstance(old, Collection) and was_block and isinstance(value, type(old.data))
+        # From a list into a mapping, or the other way round: the value begins beside another mark.
+        crosses = (key is None) != (member.key is None)
+        stays = stays and not crosses
         column = old.column if isinstance(old, Collection) and stays else home.column + _STEP
         beside = old.flow if isinstance(old, Collection) and had_node(old) else None
         place = WritePosition(column, indent_after(gap, home.column), flow=False, beside=beside)
@@ -278,6 +281,8 @@ class TextRewriter:
         if written.block and not stays:
             # A comment after the old value stays after the key.
             first, _, rest = tail.partition("\n")
+            if crosses:
+                first = first or _comment_beside(home, member)
             behind = f"{first}\n{' ' * column}" if key is not None or first else " "
             return f"{name}{mark}{behind}{written.text}" + (f"\n{rest}" if rest else "")
         if was_block and not written.block:
@@ -302,8 +307,10 @@ class TextRewriter:
     def _name(self, home: Collection, key: str | None, member: Member) -> tuple[str, str]:
         """Return the key as written, or the dash, and the text between it and the value."""
         text = home.origin.text
-        if member.key is None or key is None:
-            return "-", text[member.at + 1 : member.value.start]
+        if key is None:
+            return "-", text[member.at + 1 : member.value.start] if member.key is None else " "
+        if member.key is None:
+            return key_text(key, json=self.json), ": "
         name = text[member.at : member.key.end]
         if key != member.key.value:
             name = text[member.at : member.key.start] + key_text(key, json=self.json)
@@ -364,6 +371,13 @@ class TextRewriter:
 
 def _inside(value: Plain) -> Iterable[object]:
     return value.values() if isinstance(value, dict) else value
+
+
+def _comment_beside(home: Collection, member: Member) -> str:
+    """Return the comment behind the key or dash of an entry whose value begins on the next line."""
+    mark_end = member.key.end if member.key is not None else member.at
+    line = home.origin.text[mark_end : member.value.start].partition("\n")[0][1:]
+    return line if "#" in line else ""
 
 
 def _slice(source: Collection) -> str:

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import msgspec
 
 from engine.errors import ControlError
-from engine.event import OperatorChanged, OperatorCommanded, PauseConfirmed
+from engine.event import OperatorChanged, OperatorCommanded, PauseConfirmed, UserdataWritten
 from engine.node_path import is_inside
 from engine.preemption import preempt_for_order
 from engine.runtime.control.autonomy import AutonomyLevel
@@ -20,6 +20,8 @@ from engine.runtime.record.recorder import Recorder
 from engine.runtime.scheduling.active_nodes import ActiveNodes
 from engine.runtime.scheduling.hold import BranchHolds
 from engine.runtime.scheduling.settlement import Settlement
+from engine.runtime.userdata.active_scopes import ActiveScopes
+from engine.runtime.userdata.userdata_value import plain_value
 from engine.suggestions import did_you_mean
 
 LossPolicy = Literal["hold", "continue", "stop"]
@@ -85,6 +87,7 @@ class Control:
         settlement: Waits until the run has settled.
         recorder: The event log.
         structure: The behavior, for messages about unknown nodes and outcomes.
+        scopes: The userdata that is active.
         stop: Stops the run with a reason.
         loss_policy: Reaction to the loss of the operator: hold the run, let it continue, or stop it.
         loss_timeout_s: Time between the loss and this reaction.
@@ -99,12 +102,14 @@ class Control:
         settlement: Settlement,
         recorder: Recorder,
         structure: BehaviorStructure,
+        scopes: ActiveScopes,
         stop: Callable[[str], None],
         demanded: bool = False,
         loss_policy: LossPolicy = "hold",
         loss_timeout_s: float = 5.0,
     ) -> None:
         self.structure = structure
+        self._scopes = scopes
         self._gate = gate
         self._branch_holds = branch_holds
         self._activity = activity
@@ -160,7 +165,7 @@ class Control:
         self._gate.step(SingleStep(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
 
     def require_still(self) -> None:
-        """Refuse a step back of a run that is not paused or still executes a command.
+        """Refuse a step back, or another value of userdata, of a run that is not paused or still executes a command.
 
         Raises:
             ControlError: it is running, stepping, or executing another command.
@@ -240,6 +245,33 @@ class Control:
             raise ControlError("this node has requested no outcome", where=path, hint=did_you_mean(path, asking))
         self._record("answer", path, outcome=waiting.outcome)
         self._gate.answer(path)
+
+    def set_userdata(self, scope: str, key: str, value: object) -> None:
+        """Replace a value of the userdata of a paused run; what is read afterwards reads the new one.
+
+        Args:
+            scope: The path of the scope that holds the key, as in `UserdataWritten`; empty for the behavior's own.
+            key: The key, which has a value already.
+            value: Lists, mappings, text, numbers, true, false or null.
+
+        Raises:
+            ControlError: the run is not paused, or still executes a command.
+            UserdataError: there is no such key, or the value cannot be stored.
+        """
+        self.require_still()
+        owner = self._scopes.owning(scope, key)
+        plain = plain_value(value, key=key, where=scope)
+        self._record("set_userdata", scope, key=key, value=plain)
+        owner.restore(scope, key, plain, defined=True)
+        self._recorder.emit(UserdataWritten, path="", scope=scope, key=key, value=plain)
+
+    def userdata(self, scope: str, key: str) -> object:
+        """Return a value of an active scope as it is stored, whole; raises UserdataError where there is none."""
+        return plain_value(self._scopes.owning(scope, key).own_values()[key], key=key, where=scope)
+
+    def scopes_with(self, key: str) -> tuple[str, ...]:
+        """Return the paths of the active scopes in which `set_userdata` can replace a key."""
+        return self._scopes.with_key(key)
 
     def set_autonomy(self, level: AutonomyLevel) -> None:
         """Set the autonomy: outcomes that require less than `level` pass without confirmation."""

@@ -97,7 +97,7 @@ class BehaviorReference:
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run the referenced behavior to one of its outcomes and copy its `outputs` to the enclosing scope."""
         values = entry.point.values if entry.point is not None else self.initial_values(entry.inputs)
-        inner = Scope(path, values)
+        inner = execution.scopes.open(path, values)
         left = await self.target.root.perform(inner, execution)
         name = left.target or left.outcome
         for key, outer in self.outputs.items():

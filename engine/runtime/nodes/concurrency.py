@@ -71,7 +71,7 @@ class Concurrency(WithoutEntry):
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Start all children, evaluate the conditions whenever some finish, preempt and await the others."""
         point = entry.point
-        inner = Scope(path, point.values if point is not None else self.userdata, scope)
+        inner = execution.scopes.open(path, point.values if point is not None else self.userdata, scope)
         branches = _Branches(path, inner, execution, point)
         execution.branching[path] = branches
         branches.start(self)
@@ -173,7 +173,9 @@ class _Branches:
         fresh = {name: child for name, child in container.children.items() if name not in self.tasks}
         for name in fresh:
             written = self._before.branches.get(name, {})
-            self._scopes[name] = branch_scope(self._path, name, self._inner, written, shared=container.shared)
+            self._scopes[name] = branch_scope(
+                self._path, name, self._inner, written, self._execution, shared=container.shared
+            )
         for name, child in fresh.items():
             self.tasks[name] = self._execution.activity.branch(child.path, self._work(name, child))
         for name in fresh:
@@ -287,10 +289,16 @@ def _as_outcome(left: NodeExit) -> NodeExit:
 
 
 def branch_scope(
-    path: str, name: str, outer: Scope, written: Mapping[str, object], *, shared: frozenset[str] = frozenset()
+    path: str,
+    name: str,
+    outer: Scope,
+    written: Mapping[str, object],
+    execution: Execution,
+    *,
+    shared: frozenset[str] = frozenset(),
 ) -> Scope:
     """Return the scope of one branch, which keeps its writes until the branches are merged, except shared keys."""
-    return Scope(f"{path}/{name}*", written, outer, isolated=True, shared=shared)
+    return execution.scopes.open(f"{path}/{name}*", written, outer, isolated=True, shared=shared)
 
 
 def merge_scope(branch: Scope, into: Scope, execution: Execution) -> None:

@@ -25,6 +25,7 @@ from engine.runtime.scheduling.observed_answers import ObservedAnswers
 from engine.runtime.scheduling.pending_calls import PendingCalls
 from engine.runtime.scheduling.settlement import Settlement
 from engine.runtime.scheduling.wait_counters import WaitCounter
+from engine.runtime.userdata.active_scopes import ActiveScopes
 from engine.runtime.userdata.userdata import Scope
 from engine.runtime.userdata.userdata_value import plain_value
 
@@ -70,6 +71,7 @@ class Execution:
     settlement: Settlement = field(default_factory=Settlement)
     pending_calls: PendingCalls = field(default_factory=PendingCalls)
     observed: ObservedAnswers = field(default_factory=ObservedAnswers)
+    scopes: ActiveScopes = field(default_factory=ActiveScopes)
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, NodeCheckpoint] = field(default_factory=dict[str, NodeCheckpoint])
     """Checkpoints of the nodes that are resumed; each is taken once."""

@@ -115,7 +115,7 @@ class ForEach:
         for number in range(first, len(items)):
             resumed = point is not None and number == first and point.values
             own = point.values if point is not None and resumed else loop.round_values(number, items[number])
-            inner = Scope(f"{path}#{number}", own, scope)
+            inner = execution.scopes.open(f"{path}#{number}", own, scope)
             left = await loop.child.perform(inner, execution)
             loop = execution.latest(f"{path}/", loop)
             continues = (left.target or left.outcome) in loop.next

@@ -60,7 +60,7 @@ class Machine(WithoutEntry):
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run children until a transition names an outcome of this machine."""
         point = entry.point
-        inner = Scope(path, point.values if point is not None else self.userdata, scope)
+        inner = execution.scopes.open(path, point.values if point is not None else self.userdata, scope)
         name = point.current if point is not None and point.current is not None else self.initial
         diagnosis = Diagnosis(point.cause, point.reason) if point is not None else Diagnosis()
         if name not in self.children:

@@ -47,13 +47,13 @@ class Parallel(composites.Parallel):
     def initialise(self) -> None:
         """Create a scope for each branch."""
         for name, place in self._places.items():
-            place.scope = branch_scope(self.name, name, self._outside.scope, {})
+            place.scope = branch_scope(self.name, name, self._outside.scope, {}, self._execution)
 
     def restore(self, written: Mapping[str, Mapping[str, object]]) -> None:
         """Restore the scope of each branch from its values, by the path of the branch."""
         for name, place in self._places.items():
             values = written.get(f"{self.name}/{name}", {})
-            place.scope = branch_scope(self.name, name, self._outside.scope, values)
+            place.scope = branch_scope(self.name, name, self._outside.scope, values, self._execution)
 
     def terminate(self, new_status: Status) -> None:
         """Merge the scopes of the branches, unless the parallel was halted."""

@@ -58,7 +58,7 @@ class Tree(WithoutEntry):
         runner = TreeRunner(
             self.root,
             path=path,
-            scope=Scope(path, point.values if point is not None else {}, scope),
+            scope=execution.scopes.open(path, point.values if point is not None else {}, scope),
             execution=execution,
             history=tuple(decode_tree_events(point.done)) if point is not None else (),
             branches={f"{path}/{name}": written for name, written in point.branches.items()} if point else {},

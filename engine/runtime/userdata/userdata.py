@@ -35,7 +35,7 @@ class Scope:
         shared: The keys that an isolated scope passes on to its parent.
     """
 
-    __slots__ = ("_append_only", "_isolated", "_shared", "_values", "parent", "path")
+    __slots__ = ("__weakref__", "_append_only", "_isolated", "_shared", "_values", "parent", "path")
 
     def __init__(
         self,

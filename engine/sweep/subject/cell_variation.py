@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import cast
 
 from engine.document.cell import Cell, cell_of_source
+from engine.document.simulated_devices import with_simulated_devices
 from engine.document.text.yaml_source import DataPath
 from engine.errors import DocumentError
 from engine.suggestions import did_you_mean
@@ -27,7 +28,8 @@ def varied_cell(cell: Cell, values: Mapping[str, object]) -> Cell:
         values: Values by address, `displace.PART.x_m` or `cell.PATH`.
 
     Raises:
-        DocumentError: a factor names nothing in the cell, or the cell with this value is invalid.
+        DocumentError: a factor names nothing in the cell, the cell with this value is invalid, or a device is real in
+            it that is simulated in the cell.
     """
     data = cell.source.data
     for address, value in values.items():
@@ -39,7 +41,13 @@ def varied_cell(cell: Cell, values: Mapping[str, object]) -> Cell:
             data = _displaced(cell, data, address, value)
     if data is cell.source.data:
         return cell
-    return cell_of_source(replace(cell.source, data=data), file=cell.file)
+    varied = cell_of_source(replace(cell.source, data=data), file=cell.file)
+    varied = with_simulated_devices(varied, tuple(cell.simulated))
+    for device, driver in varied.document.real_devices.items():
+        if device not in cell.document.real_devices:
+            hint = "a sweep drives no real devices: vary something else"
+            raise DocumentError(f"a factor gives `{device}` the driver `{driver}`", where=cell.file, hint=hint)
+    return varied
 
 
 def written_value(cell: Cell, path: str) -> object:

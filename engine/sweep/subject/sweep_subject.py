@@ -22,10 +22,11 @@ from engine.document.cell import Cell, SqliteStoreSpec, load_cell
 from engine.document.faults import Faults, load_faults
 from engine.document.project_file import ProjectFile, find_project
 from engine.document.python_name import is_python_name
+from engine.document.simulated_devices import with_simulated_devices
 from engine.document.state_catalogue import StateCatalogue
 from engine.document.substitutes import Substitutes, load_substitutes
 from engine.document.sweep import NO_FILE, Factor, Sweep
-from engine.errors import DocumentError
+from engine.errors import ControlError, DocumentError
 from engine.project.run_request import require_simulation
 from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
@@ -103,7 +104,7 @@ class SweepSubject:
 
         Raises:
             DocumentError: a document cannot be read or has errors, or a factor names nothing.
-            ControlError: nodes are substituted, and a robot of the cell is real.
+            ControlError: a device of the cell is real.
         """
         document = sweep.document
         name = sweep.resolve(document.behavior)
@@ -111,7 +112,8 @@ class SweepSubject:
         catalogue = load_states(Path(name))
         behavior = load_python_behavior(name) if is_python_name(name) else load_behavior(Path(name))
         cell_file = Path(sweep.resolve(document.cell)) if document.cell is not None else behavior.cell_file
-        cell = load_cell(cell_file) if cell_file is not None else None
+        cell = with_simulated_devices(load_cell(cell_file), document.simulate) if cell_file is not None else None
+        _require_no_real_devices(cell)
         _require_targets(sweep, behavior, cell)
         require_no_errors(check_behavior(behavior, catalogue, cell=cell))
         faults = {key: load_faults(file) for key, file in _files(sweep, "faults").items()}
@@ -199,6 +201,17 @@ def _files(sweep: Sweep, kind: str) -> dict[str, str]:
     named = {str(value) for value in factor.values or () if value != NO_FILE} if factor is not None else set[str]()
     files = {name: sweep.resolve(name) for name in sorted(named)}
     return files if fixed is None else {**files, "": sweep.resolve(fixed)}
+
+
+def _require_no_real_devices(cell: Cell | None) -> None:
+    """Refuse to execute a sweep with real devices: it moves them many times, and nobody looks on."""
+    real = cell.document.real_devices if cell is not None else {}
+    if cell is not None and real:
+        raise ControlError(
+            f"a sweep drives no real devices, and these of {cell.name} are real: {', '.join(real)}",
+            where=cell.file,
+            hint="simulate them: `--simulate all`, or `simulate: [all]` in the sweep",
+        )
 
 
 def _store_file(sweep: Sweep, cell: Cell | None) -> Path | None:

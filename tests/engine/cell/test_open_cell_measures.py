@@ -10,7 +10,7 @@ import pytest
 
 import engine.cell.drivers.driver_registry
 from engine.bus import SkillBus
-from engine.cell.drivers import Driver, DriverOptions
+from engine.cell.drivers import DeviceContext, Driver, DriverOptions
 from engine.cell.open_cell import OpenCell
 from engine.clock import Clock
 from engine.document.cell import load_cell
@@ -29,7 +29,7 @@ class PublishingArm:
 
     status = DeviceStatus.READY
 
-    def __init__(self, options: OtherOptions, *, name: str, clock: Clock) -> None:
+    def __init__(self, options: OtherOptions, *, name: str, clock: Clock, context: DeviceContext) -> None:
         self.name = name
 
     def register(self, bus: SkillBus) -> None:

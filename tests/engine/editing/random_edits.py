@@ -104,6 +104,7 @@ def any_edits(paths: list[str]) -> st.SearchStrategy[Plain]:
         "set_positions": {"positions": st.dictionaries(path, point, max_size=3)},
         "group": {"paths": some, "kind": _GROUPS},
         "ungroup": {"path": path},
+        "replace_type": {"paths": some, "kind": _KINDS, "runs": runs},
         "duplicate": {"paths": some},
         "paste": {"parent": path, "yaml": _CLIPBOARDS},
         "auto_connect": {"paths": some},

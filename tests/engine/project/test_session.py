@@ -107,6 +107,22 @@ async def test_a_run_is_reported_from_start_to_end_and_journaled(project: Path) 
     assert [record.status for record in list_runs(project / "journal")] == ["finished"]
 
 
+async def test_the_classes_that_runs_execute_are_known_by_their_modules(project: Path) -> None:
+    """States and behaviours of py_trees, until the run has ended."""
+    tree = "flexcell: 1\nname: tree\noutcomes: [success, failure]\nsuccess: [success]\n"
+    tree += "root: {tree: {behaviour: 'py_trees.behaviours:Running'}}\n"
+    (project / "behaviors" / "tree.yaml").write_text(tree, encoding="utf-8")
+    async with _session(project) as session:
+        assert not session.executes_classes_of({"tests.engine.fake_states", "py_trees.behaviours"})
+        for behavior, module in (("endless", "tests.engine.fake_states"), ("tree", "py_trees.behaviours")):
+            run = await session.start(f"behaviors/{behavior}.yaml", parameters={}, seed=1)
+            assert session.executes_classes_of({module, "other"})
+            assert not session.executes_classes_of({"other"})
+            await session.stop(run, reason="enough")
+            await session.wait(run)
+            assert not session.executes_classes_of({module})
+
+
 async def test_two_runs_at_once_and_one_resource(project: Path) -> None:
     """The second is refused the robot and told which run holds it; the first goes on."""
     async with _session(project) as session:

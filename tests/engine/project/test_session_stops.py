@@ -12,7 +12,10 @@ from pathlib import Path
 import pytest
 
 from engine.cell.open_cell import OpenCell
+from engine.document import load_cell
+from engine.errors import ControlError
 from engine.journal import Journal
+from engine.project.cell_reopening import CellReopening
 from engine.project.session import Session
 from engine.stop import StopRelay
 from tests.engine.fake_states import CATALOGUE
@@ -118,3 +121,27 @@ async def test_a_release_during_a_stop_takes_effect_after_it(project: Path) -> N
         assert opened.session.run(stopped).status == "stopped"
         await opened.start()
         await asyncio.to_thread(opened.arm.released.wait)
+
+
+async def test_a_cell_that_is_stopped_is_not_opened_anew_without_its_stop(project: Path) -> None:
+    """The stop ends with the cell, and simulated arms of the next one would move at once."""
+    file = project / "cell.yaml"
+    file.write_text(
+        "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\nrobots: {left: {model: ur10, driver: {kind: vendor_arm}}}\n",
+        encoding="utf-8",
+    )
+    reopening = CellReopening(load_cell(file))
+    with Journal.open(project / "journal") as journal:
+        async with (
+            OpenCell(None) as cell,
+            Session(cell, project=project, catalogue=CATALOGUE, journal=journal, reopening=reopening) as session,
+        ):
+            following = asyncio.create_task(reopening.requested())
+            await asyncio.sleep(0)
+            await session.stop_all(reason="a look inside")
+            with pytest.raises(ControlError, match="the cell is stopped"):
+                await reopening.request(("left",))
+            assert not following.done()
+            await session.recovery.release()
+            await reopening.request(("left",))
+            assert set((await following).simulated) == {"left"}

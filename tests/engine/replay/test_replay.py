@@ -22,6 +22,7 @@ from engine.event import (
     RunResumed,
     RunSteppedBack,
     ServiceCalled,
+    UserdataWritten,
 )
 from engine.faults import FaultPort
 from engine.recording import RecordedEvent, load_recording
@@ -425,3 +426,16 @@ def test_a_change_whose_version_was_not_kept_cannot_be_replayed(tmp_path: Path) 
     }
     with pytest.raises(RecordingError, match="the new version was not kept"):
         replay(recorded(TEXT, tmp_path / "r.mcap", acts=acts), CATALOGUE)
+
+
+def test_a_value_that_a_person_set_is_set_again(tmp_path: Path) -> None:
+    acts: dict[float, Act] = {
+        0.5: lambda run: run.control.pause(),
+        0.75: lambda run: run.control.set_userdata("", "n", {"to": [1.5, None]}),
+        2.0: lambda run: run.control.resume(),
+    }
+    recording = recorded("userdata: {n: 1}" + TEXT, tmp_path / "r.mcap", acts=acts)
+    report = replay(recording, CATALOGUE)
+    assert report.difference is None, report.difference.explained()
+    written = [each for each in report.events if isinstance(each, UserdataWritten) and each.key == "n"]
+    assert [(each.path, each.key, each.value) for each in written] == [("", "n", {"to": [1.5, None]})]

@@ -6,6 +6,7 @@ import asyncio
 import inspect
 import logging
 import re
+import sys
 import threading
 import time
 from collections.abc import Sequence
@@ -135,3 +136,21 @@ def test_what_blocks_outside_the_states_is_logged(caplog: pytest.LogCaptureFixtu
 
     assert [block.path for block in asyncio.run(main()) if block.where.startswith(__file__)] == [""]
     assert "code outside the states has blocked the event loop" in caplog.text
+
+
+def test_a_stack_that_cannot_be_read_ends_no_watching(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is given as a frame once is none; the blocks that come later are found."""
+    frames, given = sys._current_frames, list[object]()  # pyright: ignore[reportPrivateUsage]
+
+    def once_wrong() -> dict[int, object]:
+        if not given:
+            given.append(object())
+            return dict.fromkeys(frames(), given[0])
+        return dict(frames())
+
+    monkeypatch.setattr(sys, "_current_frames", once_wrong)
+    events, _ = asyncio.run(_watched("itself"))
+    assert len(_blocked(events)) == 1
+    assert "the watchdog goes on" in caplog.text

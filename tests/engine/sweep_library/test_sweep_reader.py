@@ -137,7 +137,7 @@ def test_a_sweep_with_a_real_robot_is_refused(project: LuckProject) -> None:
     file = project.path / "real.yaml"
     file.write_text(REAL)
     subject = replace(SweepSubject.load(load_sweep(project.path / ID)), cell=load_cell(file))
-    with pytest.raises(ControlError, match=r"the robot arm is real \(driver other\): a sweep only simulates"):
+    with pytest.raises(ControlError, match=r"arm is real \(driver other\): a sweep only simulates"):
         require_simulated(subject)
 
 

@@ -10,7 +10,16 @@ from typing import Annotated
 import msgspec
 import typer
 
-from engine.cell.drivers import AssignedDriver, DeviceReport, Driver, assigned_drivers, installed_drivers
+from engine.cell.drivers import (
+    AssignedDriver,
+    DeviceContext,
+    DeviceReport,
+    Driver,
+    DriverOptions,
+    assigned_drivers,
+    installed_drivers,
+)
+from engine.cli.capture_option import Capture, capture_folder
 from engine.cli.exit_code import ExitCode
 from engine.clock import new_clock
 from engine.document.cell import load_cell
@@ -21,18 +30,19 @@ _READINGS = 50
 
 def devices(
     cell: Annotated[Path | None, typer.Argument(help="Cell document; without one, the installed drivers.")] = None,
+    capture: Capture = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read the real devices of a cell and report them; without a cell, list the installed drivers. Nothing moves.
 
     Exit code 0: every device answers. 1: one does not, or has a fault. 2: the cell is not valid.
 
-    `flexcell devices behaviors/cells/robotiq_emulated.yaml`
+    `flexcell devices cell.yaml --capture traces`
     """
     if cell is None:
         _print_drivers(json=json)
         return
-    reports = asyncio.run(_read_all(tuple(assigned_drivers(load_cell(cell)))))
+    reports = asyncio.run(_read_all(tuple(assigned_drivers(load_cell(cell))), capture_folder(capture)))
     if json:
         sys.stdout.write(msgspec.json.encode(reports).decode() + "\n")
     elif not reports:
@@ -43,13 +53,15 @@ def devices(
         raise typer.Exit(ExitCode.OTHER_OUTCOME)
 
 
-async def _read_all(assigned: tuple[AssignedDriver, ...]) -> list[DeviceReport]:
+async def _read_all(assigned: tuple[AssignedDriver, ...], capture: Path | None) -> list[DeviceReport]:
     ready = [(each, driver := each.driver(), each.options(driver)) for each in assigned]
-    return [await _read(driver, options, name=each.device_name(driver)) for each, driver, options in ready]
+    return [await _read(each, driver, options, capture) for each, driver, options in ready]
 
 
-async def _read(driver: Driver, options: object, *, name: str) -> DeviceReport:
-    device = driver.new_device(options, name=name, clock=new_clock())  # pyright: ignore[reportArgumentType]
+async def _read(assigned: AssignedDriver, driver: Driver, options: DriverOptions, capture: Path | None) -> DeviceReport:
+    name = assigned.device_name(driver)
+    context = DeviceContext(cell=assigned.cell, robot=assigned.robot, capture=capture)
+    device = driver.new_device(options, name=name, clock=new_clock(), context=context)
     try:
         async with device:
             return await device.report(readings=_READINGS)
@@ -59,7 +71,7 @@ async def _read(driver: Driver, options: object, *, name: str) -> DeviceReport:
             device=name,
             driver=driver.kind,
             address=str(cause.where or ""),
-            capabilities=tuple(sorted(driver.capabilities)),
+            capabilities=tuple(sorted(driver.configured(options).capabilities)),
             proven=driver.proven,
             error=cause.message,
             hint=error.hint or "",
@@ -72,7 +84,7 @@ def _text(report: DeviceReport) -> str:
         lines += [f"no answer: {report.error}", *([f"check: {report.hint}"] if report.hint else [])]
     else:
         lines += [f"state: {report.state}", f"fault: {report.fault or 'none'}"]
-        lines += [f"firmware: {report.firmware or 'not told by the device'}"]
+        lines += [f"firmware: {report.firmware or 'the device does not report it'}"]
         lines += [f"{name}: {value:g}" for name, value in report.readings.items()]
         trip = report.round_trip
         if trip is not None:

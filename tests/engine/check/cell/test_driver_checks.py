@@ -7,10 +7,14 @@ from typing import Any
 
 import pytest
 
+from engine.cell.cell_names import CellNames
 from engine.cell.drivers import Driver, DriverOptions
 from engine.check import check_behavior, check_cell
 from engine.document import load_behavior, load_cell
 from engine.registry import load_states
+from engine.skills.contact import MoveUntilContact
+from engine.skills.gripper import GripperGrasp
+from engine.skills.motion import JointTrapVel
 
 OPTIONS = "kind: robotiq, connection: {kind: modbus_tcp, host: 192.168.1.11}"
 CELL = """\
@@ -134,3 +138,12 @@ def test_a_state_beyond_the_driver_of_its_arm_is_refused_with_the_reason(
     found = [(finding.path, finding.message) for finding in findings if finding.code == "beyond-driver"]
     reason = "the driver vendor_arm has no impedance control, only sampled trajectories"
     assert found == [("root/guide", f"motion.SetImpedance cannot be executed by `left`: {reason}")]
+
+
+def test_a_composed_state_needs_of_each_device_what_the_device_itself_does() -> None:
+    """A driver of an arm needs no gripper commands for a state that also closes a gripper, and none of contacts."""
+    names = CellNames(cell="bench", by_kind={}, drivers={"left": VENDOR})
+    assert names.beyond_driver("robot", "left", (JointTrapVel, GripperGrasp)) == ""
+    assert names.beyond_driver("gripper", "left", (JointTrapVel, GripperGrasp)) == ""
+    reason = "the driver vendor_arm has no measured contact forces, only sampled trajectories"
+    assert names.beyond_driver("robot", "left", (GripperGrasp, MoveUntilContact)) == reason

@@ -203,3 +203,10 @@ def test_states_run_beside_threads_that_leave_the_loop_its_turn(tmp_path: Path) 
     project.behavior("nod", f"{module}:Nod")
     said = flexcell("run", "behaviors/nod.yaml", "--clock", "virtual", "-q", cwd=tmp_path)
     assert said.code == 0, said.err
+
+
+def test_motion_is_permitted_with_a_reason_or_not_at_all(behavior: Path) -> None:
+    """Usage, so nothing has been opened."""
+    said = flexcell("run", behavior, "--enable", " ", cwd=behavior.parent)
+    assert said.code == 2
+    assert "say in words why it is permitted" in said.err

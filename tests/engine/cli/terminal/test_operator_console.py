@@ -124,6 +124,19 @@ def test_steps_breakpoints_locks_and_orders(nested: Path) -> None:
     ]  # fmt: skip
 
 
+def test_a_value_of_the_userdata_is_replaced_at_a_breakpoint(nested: Path) -> None:
+    said = operated(
+        nested, "break root/four\nwait\nset n\nset k 1\nset n 7 in behavior\nset n [1\nclear\nresume\ndetach\n"
+    )
+    assert said.code == 1
+    for line in (
+        "a key and a value as JSON are required, as in `set n 3`; usage: set KEY JSON [in CONTAINER]",
+        "there is no userdata key 'k'",
+    ):
+        assert line in said.err
+    assert commanded(nested.parent) == ["breakpoints", "set_userdata", "breakpoints", "resume"]
+
+
 def test_steps_back_one_after_the_other(nested: Path) -> None:
     script = """
     break root/three

@@ -21,6 +21,7 @@ from engine.editing.text.outline import Outline
 from tests.engine.check.random_behaviors import behaviors
 from tests.engine.editing.edit_fixtures import analysis_of, context, read_edits
 from tests.engine.editing.layouts import Layout, Plain, chances
+from tests.engine.editing.optimistic_examples import EXAMPLES, encoded
 from tests.engine.editing.random_edits import any_edits
 
 FILE = Path("no-such-project/x.yaml")
@@ -116,3 +117,7 @@ def test_a_graph_that_the_server_does_not_know_is_answered_whole() -> None:
     assert (first.difference, first.graph is None) == (None, False)
     drafts.draw(text, file=FILE, context=known)
     assert drafts.edit(text, edits, file=FILE, context=known, graph="0" * 64).difference is None
+
+
+def test_the_examples_of_the_page_are_what_the_server_answers() -> None:
+    assert EXAMPLES.read_bytes() == encoded(), "run `python -m tests.engine.editing.optimistic_examples`"

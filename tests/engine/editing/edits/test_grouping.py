@@ -69,10 +69,12 @@ def test_a_chain_becomes_a_sequence_and_a_chain_again() -> None:
       group:
         tree:
           sequence:
-            - name: one
+            -   # 1
+              name: one
               state: flow.Wait
               with: {duration_s: 1}
             - {name: two, state: test.Give}
+            # Third.
             - name: three
               state: test.Give
               on_error: failure

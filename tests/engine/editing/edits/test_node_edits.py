@@ -301,7 +301,7 @@ def test_a_state_moved_into_a_concurrency_container_has_no_transitions_there() -
 def test_a_state_moved_into_a_tree_keeps_its_name_there() -> None:
     text = edited(TEXT, {"edit": "add_node", "parent": "root", "kind": "tree", "name": "plan"})
     made = edited(text, {"edit": "move_nodes", "paths": ["root/first"], "parent": "root/plan/sequence"})
-    assert "- name: first\n" in made
+    assert "            # Above the first.\n            -   # behind the first\n              name: first\n" in made
     assert "timeout: {after: 5 s, to: failure}" in made
     assert "initial: second" in made
 

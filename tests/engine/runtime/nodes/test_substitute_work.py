@@ -183,7 +183,7 @@ def test_no_real_robot_is_left_out_of_a_run_by_accident(tmp_path: Path) -> None:
         "flexcell: 1\ncell: real\nrobots: {left: {model: panda, driver: {kind: other}}}\n", encoding="utf-8"
     )
     cell, plan = load_cell(tmp_path / "cell.yaml"), _plan("- {at: root/act, outcome: done}\n")
-    with pytest.raises(ControlError, match=r"root/act has a substitute, but robot left is real"):
+    with pytest.raises(ControlError, match=r"root/act has a substitute, but left is real"):
         require_simulation(plan, cell)
     require_simulation(plan, cell, allowed=True)
     require_simulation(new_plan(parse_behavior(CHAIN, file="test.yaml"), WITH_FLOW), cell)

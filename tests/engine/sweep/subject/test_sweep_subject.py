@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from engine.document.sweep import parse_sweep
-from engine.errors import DocumentError
+from engine.errors import ControlError, DocumentError
+from engine.sweep.subject.cell_variation import varied_cell
 from engine.sweep.subject.sweep_subject import SweepSubject, other_versions, package_versions
 from tests.engine.sweep.luck_project import LuckProject
 
@@ -133,3 +134,42 @@ def test_a_cell_factor_needs_a_cell(project: LuckProject) -> None:
     text = '{"flexcell": 1, "behavior": "luck.yaml", "factors": {"displace.bolt.x_m": {"values": [1]}}}'
     with pytest.raises(DocumentError, match=r"`displace.bolt.x_m` needs a cell"):
         SweepSubject.load(parse_sweep(text, file=project.path / "s.yaml"))
+
+
+REAL = """\
+flexcell: 1
+cell: bench
+world: {kind: mujoco}
+robots:
+  left: {model: ur10, gripper: {model: robotiq_2f85, driver: {kind: nowhere}}}
+"""
+
+
+def test_a_sweep_drives_no_real_device_unless_it_is_simulated(project: LuckProject) -> None:
+    (project.path / "real.yaml").write_text(REAL, encoding="utf-8")
+    with pytest.raises(
+        ControlError, match=r"a sweep drives no real devices, and these of bench are real: left/gripper"
+    ):
+        _subject(project, cell="real.yaml")
+    subject = _subject(project, cell="real.yaml", simulate=["all"])
+    assert subject.cell is not None
+    assert subject.cell.document.real_devices == {}
+    # A factor makes another cell of it, in which the device is simulated all the same.
+    varied = varied_cell(subject.cell, {"cell.world.realism": "ideal"})
+    assert (varied.document.real_devices, dict(varied.simulated)) == ({}, {"left/gripper": "nowhere"})
+
+
+def test_no_factor_makes_a_device_real(project: LuckProject) -> None:
+    (project.path / "sim.yaml").write_text(REAL.replace("{kind: nowhere}", "sim"), encoding="utf-8")
+    cell = _subject(project, cell="sim.yaml").cell
+    assert cell is not None
+    with pytest.raises(DocumentError, match="a factor gives `left/gripper` the driver `nowhere`"):
+        varied_cell(cell, {"cell.robots.left.gripper.driver": {"kind": "nowhere"}})
+
+
+def test_what_is_simulated_tells_versions_apart(project: LuckProject) -> None:
+    (project.path / "real.yaml").write_text(REAL, encoding="utf-8")
+    sim = REAL.replace("{kind: nowhere}", "sim")
+    (project.path / "sim.yaml").write_text(sim, encoding="utf-8")
+    simulated = _subject(project, cell="real.yaml", simulate=["left/gripper"])
+    assert simulated.versions["cell"] == _subject(project, cell="sim.yaml").versions["cell"]
