@@ -11,7 +11,7 @@ import msgspec
 
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.errors import RecordingError
-from engine.messages import FramePoses, RobotDescription, SceneDescription
+from engine.messages import FramePoses, JointSetPoint, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, OccupancyGrid, OccupancyState
 from engine.recording import IndexedRecording
 from engine.skills.planning import PathPreview
@@ -22,6 +22,7 @@ _KINDS: tuple[type[msgspec.Struct], ...] = (
     RobotDescription,
     SceneDescription,
     FramePoses,
+    JointSetPoint,
     PlanningSceneState,
     PathPreview,
     CameraInfo,
@@ -71,7 +72,7 @@ class RecordedScene:
         self._pieces[-1].refresh()
         piece = next((each for each in reversed(self._pieces) if each.span_s[0] <= time_s), self._pieces[0])
         for topic, kind in piece.topics.items():
-            if kind in _DECODERS:
+            if kind in _DECODERS and (kind != JointSetPoint.__name__ or _is_of_real_arm(piece, topic)):
                 message = self._message(piece, topic, kind, time_s)
                 if message is not None:
                     latest.put(topic.rpartition("/")[0], message)
@@ -91,11 +92,18 @@ class RecordedScene:
         return known[1]
 
 
+def _is_of_real_arm(piece: IndexedRecording, set_point: str) -> bool:
+    """Return whether the set points of an arm were recorded as they changed; those of simulated arms are not."""
+    return f"{set_point.rpartition('/')[0]}/device" in piece.topics
+
+
 def _initial_message(topic: str, kind: str) -> object | None:
     """Return the message for a time before the first one of a topic; it clears a later one that is drawn."""
     name = topic.rpartition("/")[0]
     if kind == PathPreview.__name__:
         return PathPreview(robot=name, state="none")
+    if kind == JointSetPoint.__name__:
+        return JointSetPoint(time_s=0.0, names=(), position_rad=())
     if kind == Detections.__name__:
         return Detections(camera=name, frame="world", time_s=0.0, detections=(), image_px=(0, 0))
     if kind == OccupancyGrid.__name__:

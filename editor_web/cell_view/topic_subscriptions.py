@@ -12,7 +12,8 @@ from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import LayerGroup
 from engine.bus import JsonBus
 from engine.errors import FlexcellError
-from engine.messages import FramePoses, RobotDescription, SceneDescription
+from engine.messages import FramePoses, JointSetPoint, RobotDescription, SceneDescription
+from engine.messages.device_state import DeviceState
 from engine.messages.sensing import CameraInfo, DepthImage, ObservedSpace, OccupancyGrid, OccupancyState
 from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
@@ -98,10 +99,14 @@ class TopicSubscriptions:
     async def _follow(self) -> None:
         entries = [entry for entry in await self._topics.bus.listing() if entry.kind == "topic"]
         shown = self._shown()
+        real = {entry.name.rpartition("/")[0] for entry in entries if entry.type == DeviceState.__name__}
         due = {
             entry.name: _RANK.get(entry.type, len(_RANK))
             for entry in entries
-            if entry.type in _RANK or _WHILE_SHOWN.get(entry.type) in shown
+            if entry.type in _RANK
+            or _WHILE_SHOWN.get(entry.type) in shown
+            # Set points of simulated arms are made when they are read, and never published.
+            or (entry.type == JointSetPoint.__name__ and entry.name.rpartition("/")[0] in real)
         }
         for topic in [name for name in self._unsubscribers if name not in due]:
             self._unsubscribers.pop(topic)()

@@ -12,6 +12,7 @@ from engine.cell import CellConnection
 from engine.check import CellFit
 from engine.event import AnyEvent
 from engine.library import BehaviorView
+from engine.project import DrivenDeviceChoice
 from engine.runtime.history import ResumeQuestion
 from engine.stop import StopEndpoint
 
@@ -70,6 +71,15 @@ class ConnectBody(RequestBody, frozen=True, kw_only=True):
     """A request to reconnect the lost devices of the cell."""
 
 
+class SimulationBody(RequestBody, frozen=True, kw_only=True):
+    """A request to open the cell anew: `simulated` are the devices that its world simulates instead of their drivers.
+
+    All others with a driver are real.
+    """
+
+    simulated: Annotated[tuple[Annotated[str, Meta(max_length=200)], ...], Meta(max_length=100)]
+
+
 class SessionBody(msgspec.Struct, frozen=True, kw_only=True):
     """The role of the session and the features of this server; `stop` is for operators.
 
@@ -81,6 +91,10 @@ class SessionBody(msgspec.Struct, frozen=True, kw_only=True):
     cell_view_port: int | None
     epoch: str
     cell: CellConnection
+    devices: tuple[DrivenDeviceChoice, ...] = ()
+    """The devices with a driver of their own, and whether they are real or simulated now."""
+    opening_problem: str = ""
+    """Why the cell was not opened as it was asked for last; it is open as it was before."""
     stop: StopEndpoint | None = None
 
 

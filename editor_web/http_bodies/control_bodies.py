@@ -39,6 +39,14 @@ class ForceBody(NodeCommandBody, frozen=True, kw_only=True):
     outcome: str
 
 
+class UserdataBody(RequestBody, frozen=True, kw_only=True):
+    """A value of the userdata of a run, whole; the empty scope is that of the behavior."""
+
+    scope: str = ""
+    key: str
+    value: object
+
+
 class AutonomyBody(RequestBody, frozen=True, kw_only=True):
     """The autonomy level; outcomes that require less than `level` pass without an answer."""
 

@@ -1,10 +1,10 @@
-"""Notifies pages of documents that change on disk, through another page, an editor or git."""
+"""Notifies pages of documents and of modules of states that change on disk, through another page, an editor or git."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from engine.editing import DocumentRepository
 
@@ -19,6 +19,8 @@ class DocumentWatch:
     Args:
         documents: The documents.
         changed: Called with the hash of each changed document, by id; None for a deleted one.
+        reloaded: Called after modules of the project's own states were loaded anew, or could not be.
+        are_used: Returns whether a run executes classes of these modules; they are then loaded later.
         is_needed: Returns whether a page is connected.
         period_s: Polling period.
     """
@@ -29,11 +31,15 @@ class DocumentWatch:
         *,
         changed: DocumentsCallback,
         is_needed: Callable[[], bool],
+        reloaded: Callable[[], None] = lambda: None,
+        are_used: Callable[[Collection[str]], bool] = lambda _: False,
         period_s: float = PERIOD_S,
     ) -> None:
         self._documents = documents
         self._changed = changed
         self._is_needed = is_needed
+        self._reloaded = reloaded
+        self._are_used = are_used
         self._period_s = period_s
         self._seen: dict[str, tuple[int, int]] | None = None
         self._task: asyncio.Task[None] | None = None
@@ -80,3 +86,12 @@ class DocumentWatch:
                 continue
             if changed:
                 self._changed(changed)
+            await self._reload_states()
+
+    async def _reload_states(self) -> None:
+        states = self._documents.states
+        # A run keeps the classes that it began with; what it imports later must be of the same modules.
+        if not await asyncio.to_thread(states.is_due) or self._are_used(states.modules):
+            return
+        if await asyncio.to_thread(self._documents.reload_states):
+            self._reloaded()

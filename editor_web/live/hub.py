@@ -15,7 +15,14 @@ from collections.abc import Callable
 
 from editor_web.live.cell_stop_watch import CellStopWatch
 from editor_web.live.document_watch import DocumentWatch
-from editor_web.live.live_frames import CellStopChanged, DocumentsChanged, LiveDelta, LiveSnapshot, SweepsChanged
+from editor_web.live.live_frames import (
+    CellStopChanged,
+    DocumentsChanged,
+    LiveDelta,
+    LiveSnapshot,
+    StatesChanged,
+    SweepsChanged,
+)
 from editor_web.live.presence import PresenceChanged, PresenceRoster
 from editor_web.live.robot_status import RobotStatusCache
 from engine.errors import ControlError, FlexcellError
@@ -42,6 +49,7 @@ class LiveClient:
         self._sweeps: dict[str, SweepLive] = dict(hub.sweeps)
         self._is_stop_due = False
         self._is_presence_due = False
+        self._are_states_due = False
         self.page = hub.presence.new_page()
         """Its number among the pages of this server."""
         self.dirty = asyncio.Event()
@@ -81,6 +89,11 @@ class LiveClient:
         self._documents |= changed
         self.dirty.set()
 
+    def note_states(self) -> None:
+        """Mark that modules of states were loaded anew."""
+        self._are_states_due = True
+        self.dirty.set()
+
     def note_sweep(self, sweep: str, live: SweepLive) -> None:
         """Mark a sweep that has gone on, or has ended."""
         self._sweeps[sweep] = live
@@ -98,7 +111,16 @@ class LiveClient:
 
     def frame(
         self,
-    ) -> LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | None:
+    ) -> (
+        LiveSnapshot
+        | LiveDelta
+        | DocumentsChanged
+        | StatesChanged
+        | SweepsChanged
+        | CellStopChanged
+        | PresenceChanged
+        | None
+    ):
         """Return the pending changes as one frame and clear them; None if there are none. A stop comes first."""
         if self._is_stop_due and not self._snapshot_due:
             self._is_stop_due = False
@@ -107,6 +129,9 @@ class LiveClient:
             # The other changes stay pending.
             changed, self._documents = self._documents, {}
             return DocumentsChanged(changed=changed)
+        if self._are_states_due and not self._snapshot_due:
+            self._are_states_due = False
+            return StatesChanged(revision=self._hub.states_revision)
         if self._sweeps and not self._snapshot_due:
             gone_on, self._sweeps = self._sweeps, {}
             return SweepsChanged(changed=gone_on)
@@ -122,7 +147,7 @@ class LiveClient:
             frame = None
         self._snapshot_due = self._is_stop_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
-        if self._documents or self._sweeps or self._is_presence_due:
+        if self._documents or self._are_states_due or self._sweeps or self._is_presence_due:
             self.dirty.set()
         # The engine reports the end of a run before it has stored it; such a run is read again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
@@ -187,8 +212,14 @@ class LiveHub:
         self.robots = RobotStatusCache(backend, changed=self._on_robot)
         self.stop_watch = CellStopWatch(backend, changed=self._on_stop)
         self.documents = DocumentWatch(
-            backend.documents, changed=self._on_documents, is_needed=lambda: bool(self._clients)
+            backend.documents,
+            changed=self._on_documents,
+            reloaded=self._on_states,
+            are_used=backend.executes_classes_of,
+            is_needed=lambda: bool(self._clients),
         )
+        self.states_revision = 0
+        """How often modules of the project's own states were loaded anew."""
 
     @property
     def clients(self) -> tuple[LiveClient, ...]:
@@ -283,3 +314,8 @@ class LiveHub:
     def _on_documents(self, changed: dict[str, str | None]) -> None:
         for client in self._clients:
             client.note_documents(changed)
+
+    def _on_states(self) -> None:
+        self.states_revision += 1
+        for client in self._clients:
+            client.note_states()

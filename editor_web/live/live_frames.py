@@ -74,6 +74,12 @@ class DocumentsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="documents
     changed: dict[str, str | None]
 
 
+class StatesChanged(msgspec.Struct, frozen=True, kw_only=True, tag="states", tag_field="k"):
+    """Modules of the project's own states were loaded anew, or could not be; how often since the server has started."""
+
+    revision: int
+
+
 class SweepsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="sweeps", tag_field="k"):
     """How far sweeps are that are being executed, or have just ended, by id."""
 
@@ -133,5 +139,15 @@ class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k")
     """From the client: answer to a ping."""
 
 
-Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
+Frame = (
+    Hello
+    | LiveSnapshot
+    | LiveDelta
+    | DocumentsChanged
+    | StatesChanged
+    | SweepsChanged
+    | CellStopChanged
+    | PresenceChanged
+    | Ping
+)
 Request = WatchRun | OperateRun | ShowLayers | ScrubPath | LookAt | ShowPresence | Pong

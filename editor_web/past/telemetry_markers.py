@@ -1,4 +1,4 @@
-"""What the telemetry of a recorded run shows: forces above what was asked for or allowed, and joints at their limits.
+"""What the telemetry of a recorded run shows: forces, joints at their limits, and what happened to real devices.
 
 Pairs of bodies that touched are on no topic, so that contacts come from the results of goals alone. A recording has at
 most `topic_rate_hz` messages of a topic each second: a shorter peak may be missing.
@@ -18,6 +18,7 @@ from editor_web.past.goal_results import PerformedGoal
 from editor_web.past.measured_marker import MeasuredKind, MeasuredMarker
 from editor_web.past.recorded_curves import RecordedPieces
 from engine.messages import JointState, RobotDescription, Wrench
+from engine.messages.device_state import DeviceMode, DeviceState
 from engine.skills.arm_control import ArmStatus
 
 MAX_MESSAGES = 50_000
@@ -32,6 +33,13 @@ TORQUE_SHARE = 0.98
 """From this share of its torque limit on, a joint cannot follow."""
 _READ = frozenset({JointState.__name__, Wrench.__name__, ArmStatus.__name__})
 _STOPPED = frozenset({"reflex", "fault"})
+_DEVICE_WORDS: dict[DeviceMode, str] = {
+    "reading": "not enabled",
+    "enabled": "enabled",
+    "stopped": "stopped",
+    "fault": "has a fault",
+    "lost": "lost",
+}
 _MESSAGES_PER_YIELD = 256
 SeqAt = Callable[[float], int]
 _M = TypeVar("_M", bound=msgspec.Struct)
@@ -75,7 +83,14 @@ class _Context:
     seq_at: SeqAt
 
     def marker(
-        self, kind: MeasuredKind, at_s: float, device: str, value: float, unit: str, limit: float | None, text: str
+        self,
+        kind: MeasuredKind,
+        at_s: float,
+        device: str,
+        value: float | None,
+        unit: str,
+        limit: float | None,
+        text: str,
     ) -> MeasuredMarker:
         active = (g for g in reversed(self.goals) if g.from_s <= at_s <= g.until_s and _is_of(g.device, device))
         path = next((goal.path for goal in active), "")
@@ -107,6 +122,8 @@ def telemetry_markers(pieces: RecordedPieces, goals: Sequence[PerformedGoal], se
             markers += _of_forces(pieces, arm, topic, context)
         elif kind == ArmStatus.__name__:
             markers += _of_stops(pieces, arm, topic, context)
+        elif kind == DeviceState.__name__:
+            markers += _of_device(pieces, arm, topic, context)
     return markers
 
 
@@ -181,6 +198,19 @@ def _of_stops(pieces: RecordedPieces, arm: str, topic: str, context: _Context) -
             text = f"{arm} stopped by itself ({status.mode}){reason}"
             yield context.marker("limit", at_s, arm, force_n, "N", status.settings.collision_force_n, text)
         before = status.mode
+
+
+def _of_device(pieces: RecordedPieces, device: str, topic: str, context: _Context) -> Iterator[MeasuredMarker]:
+    """Yield the times at which a real device was enabled, stopped or lost; not how it was at the beginning."""
+    before: DeviceState | None = None
+    for at_s, state in _read(pieces, topic, DeviceState):
+        if before is not None and (state.mode, state.problem) != (before.mode, before.problem):
+            if state.enabled:
+                text = f"{device} enabled by {state.enabled_by or 'a person'}: {state.enabled_for}"
+            else:
+                text = f"{device} {_DEVICE_WORDS[state.mode]}: {state.problem}"
+            yield context.marker("limit", at_s, device, None, "", None, text)
+        before = state
 
 
 def _read(pieces: RecordedPieces, topic: str, kind: type[_M]) -> Iterator[tuple[float, _M]]:

@@ -1,4 +1,4 @@
-"""Operating a run: pause, step, step back, breakpoints, lock, force, repeat, answer, autonomy, hot change, resume."""
+"""Operating a run: pause, steps, breakpoints, lock, force, repeat, answer, userdata, autonomy, hot change, resume."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from editor_web.http_bodies.control_bodies import (
     ResumeBody,
     StepBackBody,
     StepBody,
+    UserdataBody,
 )
 from editor_web.routes.breakpoints import to_breakpoints
 from editor_web.routes.services import ServicesOf
@@ -120,6 +121,19 @@ async def repeat(control: ControlOf, body: NodeCommandBody) -> ControlView:
 async def answer(control: ControlOf, body: NodeCommandBody) -> ControlView:
     """Approve the outcome that a node has requested."""
     control.answer(body.path)
+    return await _settled_view(control)
+
+
+@router.get("/{run_id}/control/userdata")
+async def get_userdata(control: ControlOf, key: str, scope: str = "") -> UserdataBody:
+    """Return a value of an active container; what `/data` shows of a large one is truncated."""
+    return UserdataBody(scope=scope, key=key, value=control.userdata(scope, key))
+
+
+@router.post("/{run_id}/control/userdata")
+async def set_userdata(control: ControlOf, body: UserdataBody) -> ControlView:
+    """Replace a value of the userdata of a paused run; the path of its scope is the one that `/data` shows."""
+    control.set_userdata(body.scope, body.key, body.value)
     return await _settled_view(control)
 
 

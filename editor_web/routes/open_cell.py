@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody
+from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody, SimulationBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.cell import CellConnection, CellItems, items_of_cell
+from engine.cell import CellConnection, CellItems, DeviceDetails, devices_of_cell, items_of_cell
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 
@@ -18,6 +18,12 @@ async def get_items(services: ServicesOf) -> CellItems:
     backend = services.backend
     topics = [topic.name for topic in backend.inspector.topics()]
     return await run_in_threadpool(items_of_cell, backend.cell.document, name=backend.cell_name, topics=topics)
+
+
+@router.get("/devices")
+async def get_devices(services: ServicesOf) -> tuple[DeviceDetails, ...]:
+    """Return the devices with a driver: what it can do, what enabling does, its options and their schema."""
+    return await run_in_threadpool(devices_of_cell, services.backend.cell.document)
 
 
 @router.get("/connection")
@@ -31,3 +37,12 @@ async def connect_cell(body: ConnectBody, services: ServicesOf) -> None:
     """Reconnect lost devices; 409 while a run is active, 422 if a device does not reconnect."""
     del body
     await services.backend.connect_cell()
+
+
+@router.post("/simulation", status_code=202, responses={409: {"model": ErrorBody}, 422: {"model": ErrorBody}})
+async def switch_simulation(body: SimulationBody, services: ServicesOf) -> None:
+    """Close the cell and open it anew with these devices simulated and all others real; 409 while something is active.
+
+    All connections end; the server answers again at the same address once the cell is open.
+    """
+    await services.backend.reopening.request(body.simulated)

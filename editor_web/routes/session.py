@@ -35,6 +35,8 @@ async def get_session(request: Request, services: ServicesOf) -> SessionBody:
         cell_view_port=services.view_port,
         epoch=services.hub.epoch,
         cell=services.backend.cell_connection,
+        devices=services.backend.reopening.devices,
+        opening_problem=services.backend.reopening.problem,
         stop=stop if role == OPERATOR else None,
     )
 

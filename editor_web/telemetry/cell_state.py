@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from editor_web.telemetry.data_frames import CellStateFrame, ToolHolds
+from editor_web.telemetry.data_frames import CellStateFrame, DeviceNow, ToolHolds
 from engine.cell import tool_kinds
 from engine.messages import FramePoses, PartPoses, Pose
+from engine.messages.device_state import DeviceLink, DeviceState
 from engine.messages.sensing import CameraInfo
+from engine.messages.tool_hold import ToolHold
 from engine.project import BusInspector
 
 _DIGITS = 4
@@ -16,15 +18,15 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
     poses: dict[str, Pose] = {}
     cameras: dict[str, Pose] = {}
     tools: dict[str, ToolHolds] = {}
+    states: dict[str, DeviceState] = {}
+    links: dict[str, DeviceLink] = {}
     measured = {kind.measured.__name__ for kind in tool_kinds().values()}
     for topic in inspector.topics():
-        owner = topic.name.partition("/")[0]
+        owner, device = topic.name.partition("/")[0], topic.name.rpartition("/")[0]
         if topic.type in measured:
             state = inspector.latest(topic.name)
-            if state is not None:
-                # Each kind of tool has a message of its own; `held` is what they share.
-                held = bool(getattr(state, "held", False))
-                tools[owner] = ToolHolds(held=held, part=str(getattr(state, "part", "")))
+            if isinstance(state, ToolHold):
+                tools[owner] = ToolHolds(held=state.held, part=state.part)
         elif topic.type in _READ:
             message = inspector.latest(topic.name)
             match message:
@@ -35,12 +37,18 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
                     poses |= {name: _rounded(pose) for name, pose in message.poses.items()}
                 case CameraInfo():
                     cameras[owner] = _rounded(message.pose)
+                case DeviceState():
+                    states[device] = message
+                case DeviceLink():
+                    links[device] = message
                 case _:
                     pass
-    return CellStateFrame(poses=poses, cameras=cameras, tools=tools)
+    devices = {name: DeviceNow(state=state, link=links.get(name)) for name, state in states.items()}
+    return CellStateFrame(poses=poses, cameras=cameras, tools=tools, devices=devices)
 
 
-_READ = frozenset((FramePoses.__name__, PartPoses.__name__, CameraInfo.__name__))
+_KINDS = (FramePoses, PartPoses, CameraInfo, DeviceState, DeviceLink)
+_READ = frozenset(kind.__name__ for kind in _KINDS)
 
 
 def _rounded(pose: Pose) -> Pose:

@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from engine.messages import Pose
+from engine.messages.device_state import DeviceLink, DeviceState
 from engine.project import GoalInfo
 from engine.runtime.history import MAX_WATCHES, ScopeView, Watch, WatchValue
 
@@ -120,16 +121,24 @@ class ToolHolds(msgspec.Struct, frozen=True, kw_only=True):
     part: str
 
 
+class DeviceNow(msgspec.Struct, frozen=True, kw_only=True):
+    """A real device: whether it may move, and how fresh its readings are."""
+
+    state: DeviceState
+    link: DeviceLink | None = None
+
+
 class CellStateFrame(msgspec.Struct, frozen=True, kw_only=True, tag="cell", tag_field="k"):
     """Where the items of the cell are now; at most five per second, and only after a change.
 
     `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those
-    of the optical frames of cameras. `tools` are by the name of their arm.
+    of the optical frames of cameras. `tools` are by the name of their arm, `devices` by their address on the bus.
     """
 
     poses: dict[str, Pose]
     cameras: dict[str, Pose]
     tools: dict[str, ToolHolds]
+    devices: dict[str, DeviceNow] = {}
 
 
 class IdleFrame(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):

@@ -22,7 +22,7 @@ from tests.editor_web.workshop import Workshop
 Serve = Callable[..., AbstractAsyncContextManager[Served]]
 
 # How long a page takes depends on what else the machine does; a page that never does it still fails.
-expect.set_options(timeout=20_000)
+expect.set_options(timeout=60_000)
 
 
 @pytest.fixture(scope="session")

@@ -38,6 +38,7 @@ from engine.event import (
 from engine.library.behavior_graph import GraphNode
 from engine.library.behavior_library import BehaviorView
 from engine.project.bus_inspector import BusInspector
+from engine.project.cell_reopening import CellReopening
 from engine.project.cell_stop import CellStop
 from engine.project.run_request import RunPosition
 from engine.project.session import RunCallback, Session
@@ -121,6 +122,7 @@ class FakeBackend(Session):
     ) -> None:
         self.lost_reason = ""
         self.recovery = NoRecovery()
+        self.reopening = CellReopening(None)
         self.cell = cast("OpenCell", SimpleNamespace(document=_cell()))
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or DocumentRepository(Path("no-project"), {})

@@ -9,6 +9,7 @@ from typing import ClassVar
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from engine.event import UserdataWritten
 from engine.messages import Pose
 from engine.state import Context, Outcome, State
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
@@ -102,6 +103,24 @@ def test_the_data_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme
         expect(page.get_by_role("progressbar", name="Progress of plant/travel")).to_be_visible()
         require_accessible(page, "data", part="section[aria-label=Data]")
         require_accessible(page, "goal", part="[data-graph]")
+
+
+def test_a_value_is_changed_while_the_run_is_paused(browser: Browser, shop: Workshop) -> None:
+    """By keyboard; the run has it, and it is said that no node wrote it."""
+    run = shop.start(TRIP_ID)
+    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=LAPTOP) as page:
+        open_data(page)
+        change = page.get_by_role("button", name="Change count")
+        expect(change).to_have_attribute("aria-disabled", "true")
+        page.get_by_role("button", name="Pause", exact=True).click()
+        expect(change).to_have_attribute("aria-disabled", "false")
+        change.press("Enter")
+        page.get_by_label("New value of count").fill("[41]")
+        require_accessible(page, "a value being changed", part="section[aria-label=Data]")
+        page.keyboard.press("Enter")
+        expect(page.get_by_role("region", name="Behavior")).to_contain_text("set by a person")
+        written = [each for each in shop.events(run) if isinstance(each, UserdataWritten)]
+        assert (written[-1].key, written[-1].value) == ("count", [41])
 
 
 def test_the_data_on_a_phone(browser: Browser, shop: Workshop) -> None:

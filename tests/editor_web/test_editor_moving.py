@@ -36,6 +36,14 @@ def corner(part: Locator) -> tuple[float, float]:
     return box["x"], box["y"]
 
 
+def own_place(page: Page, path: str) -> tuple[str, str]:
+    """Where React Flow has placed a node, and by how much its drawing is shifted."""
+    style: list[str] = page.locator(f".react-flow__node[data-id='{path}']").evaluate(
+        "(node) => [node.style.transform, node.style.translate]"
+    )
+    return style[0], style[1]
+
+
 def line(page: Page, arrow: str) -> Locator:
     """An arrow."""
     return page.locator(f".react-flow__edge[data-id='{arrow}'] [data-line]")
@@ -49,6 +57,7 @@ def test_what_is_in_a_dragged_container_comes_along_and_its_arrows_keep_their_co
         inside = (card(page, "root/around/a"), line(page, "root/around|a|done"))
         into = line(page, "root|first|done")
         before = [corner(part) for part in inside]
+        frame, placed = corner(card(page, "root/around")), own_place(page, "root/around/a")
         courses = [arrow.get_attribute("d") for arrow in (inside[1], into)]
         x, y = corner(card(page, "root/around").locator("[data-head]"))
         page.mouse.move(x + 40, y + 12)
@@ -62,8 +71,16 @@ def test_what_is_in_a_dragged_container_comes_along_and_its_arrows_keep_their_co
         moved = [(there[0] - here[0], there[1] - here[1]) for here, there in zip(before, after, strict=True)]
         assert all(abs(moved[0][axis] - moved[1][axis]) < 3 for axis in (0, 1))
         assert inside[1].get_attribute("d") == courses[0]
+        # Its contents are shifted as one; nothing in it is placed anew with each frame.
+        dragged = corner(card(page, "root/around"))
+        assert all(abs(dragged[axis] - frame[axis] - moved[0][axis]) < 3 for axis in (0, 1))
+        assert own_place(page, "root/around/a")[0] == placed[0]
+        assert placed[1] == ""
         # The one from outside is drawn anew from port to port.
         assert into.get_attribute("d") != courses[1]
         page.mouse.up()
         idle(page)
         assert inside[1].get_attribute("d") is not None
+        assert own_place(page, "root/around/a")[1] == ""
+        rested = [corner(part) for part in (card(page, "root/around"), inside[0])]
+        assert all(abs(rested[1][axis] - rested[0][axis] - before[0][axis] + frame[axis]) < 3 for axis in (0, 1))

@@ -75,13 +75,13 @@ def test_notes_of_the_editor_are_accessible(browser: Browser, shop: Workshop) ->
         idle(page)
         page.keyboard.press("Control+Enter")
         expect(page.get_by_role("alert")).to_contain_text(
-            "Run: the behavior is not finished. A container is empty: add a node to it."
+            "Run: the behavior is not finished. – A container is empty: add a node to it."
         )
         require_accessible(page, "a refusal beside a draft of an earlier visit")
         require_unique_names(page, "a refusal beside a draft of an earlier visit")
         page.keyboard.press("Control+z")
         expect(card(page, "root/only")).to_be_visible()
-        tab_to(page, page.get_by_role("button", name="Close the refusal"))
+        tab_to(page, page.get_by_role("button", name="Put the refusal away"))
         page.keyboard.press("Enter")
         expect(page.get_by_role("alert")).to_have_count(0)
         card(page, "root/only").click()

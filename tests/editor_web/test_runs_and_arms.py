@@ -66,6 +66,14 @@ def test_an_interrupted_run_asks_and_goes_on(browser: Browser, tmp_path: Path, l
         assert shop.session.run(run).outcome == "good"
 
 
+def test_an_arm_stands_in_full_below_the_view_of_the_cell(browser: Browser, shop: Workshop) -> None:
+    with opened_page(browser, shop.running) as page:
+        arms = page.get_by_role("list", name="Arms")
+        expect(arms.get_by_role("listitem", name="Arm left")).to_be_visible()
+        hidden_px: int = arms.evaluate("(list) => list.scrollHeight - list.clientHeight")
+    assert hidden_px <= 1
+
+
 def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Workshop) -> None:
     """All runs, from the page of the cell."""
     runs = (shop.start(), shop.start(NAP_ID))

@@ -39,6 +39,7 @@ def test_every_field_has_a_type() -> None:
         "readonly message: unknown",
         "readonly mine: unknown",
         "readonly nominal: unknown",
+        "readonly options: Dict<unknown>",
         "readonly options: readonly unknown[]",
         "readonly parameters: Dict<Dict<unknown>>",
         "readonly parameters: Dict<unknown>",

@@ -149,7 +149,7 @@ class Workshop:
     async def _up(self) -> None:
         journal = self._open.enter_context(Journal.open(self.project / ".flexcell"))
         cell = await self._open.enter_async_context(OpenCell(None))
-        catalogue = {**load_states(), **CATALOGUE, **self._states}
+        catalogue = load_states(self.project).including({**CATALOGUE, **self._states})
         self._furnish(cell.bus)
         session = await self._open.enter_async_context(
             Session(

@@ -10,12 +10,11 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from editor_web.cell_view.layers.arm_ghost import ArmGhost
 from editor_web.cell_view.rendering.canvas import TAUGHT, Canvas
-from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry
+from editor_web.cell_view.rendering.geometry import Rgb
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
-from editor_web.cell_view.rendering.transforms import Matrix, matrix_of_pose, pose_of_matrix, poses_by_frame
-from editor_web.cell_view.rendering.urdf_tree import UrdfTree
 from engine.errors import FlexcellError
 from engine.messages import RobotDescription, SceneDescription
 from engine.skills.planning import PathPreview
@@ -24,7 +23,6 @@ _log = logging.getLogger("flexcell.cell_view")
 _COLOURS: Mapping[str, Rgb] = {"proposed": (37, 99, 235), "moving": (22, 163, 74), "blocked": (220, 70, 38)}
 # The same colours as the page's curves for the places of a comparison.
 _PLACE_COLOURS: tuple[Rgb, ...] = ((37, 99, 235), (220, 70, 38), (22, 163, 74), (217, 119, 6), (107, 114, 128))
-_OPACITY = 0.4
 _LINE_PX = 4.0
 _GOAL_M = 0.012
 TRAVEL_S = 4.0
@@ -87,7 +85,7 @@ class _ArmPathDrawing:
         self._started_s = 0.0
         self._next_s = 0.0
         self._line: tuple[viser.LineSegmentsHandle, viser.IcosphereHandle] | None = None
-        self._ghost: _Ghost | None = None
+        self._ghost: ArmGhost | None = None
 
     def draw(self, preview: PathPreview, latest: LatestMessages, now_s: float) -> None:
         scene, description = latest.scene, latest.descriptions.get(self._name)
@@ -154,12 +152,12 @@ class _ArmPathDrawing:
             self._ghost.paint(colour)
             self._ghost.root.visible = True
 
-    def _new_ghost(self, latest: LatestMessages) -> _Ghost | None:
+    def _new_ghost(self, latest: LatestMessages) -> ArmGhost | None:
         description = latest.descriptions.get(self._name)
         if latest.scene is None or description is None:
             return None
         try:
-            return _Ghost(self._server, f"{self._node}/ghost", latest.scene, description)
+            return ArmGhost(self._server, f"{self._node}/ghost", latest.scene, description)
         except (FlexcellError, ValueError) as error:
             # The line alone still shows the path.
             _log.warning("the ghost of %s is not drawn: %s", self._name, error)
@@ -169,50 +167,6 @@ class _ArmPathDrawing:
         if self._ghost is not None:
             self._ghost.root.remove()
             self._ghost = None
-
-
-class _Ghost:
-    """A translucent copy of an arm."""
-
-    def __init__(self, server: Canvas, node: str, scene: SceneDescription, description: RobotDescription) -> None:
-        self._linkage = UrdfTree(description.urdf)
-        self._base = matrix_of_pose(description.base)
-        self._arm = description.name
-        self._seen: dict[str, Matrix] = {}
-        self.root = server.scene.add_frame(node, show_axes=False)
-        self._frames: dict[str, viser.FrameHandle] = {}
-        self._bodies: list[GeometryHandle] = []
-        # Links that do not move are drawn already; copies of them would flicker.
-        moved = self._linkage.moved_by(description.joint_names)
-        for index, geometry in enumerate(scene.geometries):
-            owner, _, link = geometry.frame.partition("/")
-            if owner != description.name or link not in moved:
-                continue
-            below = f"{node}/{link.replace('/', '.')}"
-            if link not in self._frames:
-                self._frames[link] = server.scene.add_frame(below, show_axes=False)
-            self._bodies.append(add_geometry(server, f"{below}/{index}", geometry, opacity=_OPACITY))
-
-    def update_tool(self, latest: LatestMessages) -> None:
-        """Take over the current pose of the tool's fingers."""
-        prefix = f"{self._arm}/"
-        poses = poses_by_frame(latest.frames).items()
-        self._seen = {
-            name.removeprefix(prefix): matrix_of_pose(pose) for name, pose in poses if name.startswith(prefix)
-        }
-
-    def place(self, names: tuple[str, ...], joints: tuple[float, ...]) -> None:
-        """Move to these joints."""
-        links = self._linkage.links(self._base, dict(zip(names, joints, strict=False)), seen=self._seen)
-        for link, handle in self._frames.items():
-            if link in links:
-                pose = pose_of_matrix(links[link])
-                handle.position, handle.wxyz = pose.xyz, pose.wxyz
-
-    def paint(self, colour: Rgb) -> None:
-        """Set the colour."""
-        for body in self._bodies:
-            body.color = colour
 
 
 def interpolate_joints(joints: tuple[tuple[float, ...], ...], share: float) -> tuple[float, ...]:

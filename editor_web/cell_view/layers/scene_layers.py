@@ -6,6 +6,7 @@ import time
 
 from editor_web.cell_view.layers.bodies import BodyLayer
 from editor_web.cell_view.layers.cameras import CameraLayer
+from editor_web.cell_view.layers.commanded import CommandedLayer
 from editor_web.cell_view.layers.detections import DetectionLayer
 from editor_web.cell_view.layers.obstacles import ObstacleLayer
 from editor_web.cell_view.layers.occupancy import VoxelLayer
@@ -22,6 +23,7 @@ class SceneLayers:
     def __init__(self, canvas: Canvas, *, under: str = "") -> None:
         self._bodies = BodyLayer(canvas, under=under)
         self._paths = PathLayer(canvas, under=under)
+        self._commanded = CommandedLayer(canvas, under=under)
         self._obstacles = ObstacleLayer(canvas, under=under)
         self._voxels = VoxelLayer(canvas, under=under)
         self._unknown = UnknownSpaceLayer(canvas, under=under)
@@ -34,6 +36,7 @@ class SceneLayers:
         self._bodies.draw(latest)
         self._obstacles.draw(latest)
         self._detections.draw(latest)
+        self._commanded.draw(latest, is_shown="commanded" in shown)
         due = (
             self._paths.draw(latest, now_s, is_shown="paths" in shown),
             self._voxels.draw(latest, now_s),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from engine.messages import FramePoses, RobotDescription, SceneDescription
+from engine.messages import FramePoses, JointSetPoint, RobotDescription, SceneDescription
 from engine.messages.sensing import CameraInfo, DepthImage, ObservedSpace, OccupancyGrid, OccupancyState
 from engine.skills.jogging import JogBlock
 from engine.skills.planning import PathPreview
@@ -15,7 +15,8 @@ from engine.skills.vision import Detections
 class LatestMessages:
     """One reference per kind, the latest message wins; `arrived` is set with every message.
 
-    `descriptions`, `paths`, `blocks`, `cameras`, `depths` and `detections` are by the name of the arm or camera.
+    `descriptions`, `set_points`, `paths`, `blocks`, `cameras`, `depths` and `detections` are by the name of the arm or
+    camera.
     Messages are frozen, so that a reader always sees a complete one.
     """
 
@@ -27,6 +28,7 @@ class LatestMessages:
         self.occupancy: OccupancyGrid | None = None
         self.observed_space: ObservedSpace | None = None
         self.descriptions: dict[str, RobotDescription] = {}
+        self.set_points: dict[str, JointSetPoint] = {}
         self.paths: dict[str, PathPreview] = {}
         self.blocks: dict[str, JogBlock] = {}
         self.occupancy_state: OccupancyState | None = None
@@ -53,6 +55,8 @@ class LatestMessages:
                 self.cameras = {**self.cameras, name: message}
             case RobotDescription():
                 self.descriptions = {**self.descriptions, name: message}
+            case JointSetPoint():
+                self.set_points = {**self.set_points, name: message}
             case PathPreview():
                 self.paths = {**self.paths, name: message}
             case JogBlock():

@@ -15,8 +15,10 @@ import viser
 from editor_web.cell_view.rendering.canvas import CELL, PAST, TAUGHT
 from editor_web.cell_view.rendering.viser_gateway import PAGE
 
-LayerGroup = Literal["voxels", "paths", "obstacles", "cameras", "detections", "people", "frames"]
-LAYER_GROUPS: tuple[LayerGroup, ...] = ("voxels", "paths", "obstacles", "cameras", "detections", "people", "frames")
+LayerGroup = Literal["voxels", "paths", "obstacles", "cameras", "detections", "people", "frames", "commanded"]
+LAYER_GROUPS: tuple[LayerGroup, ...] = (
+    "voxels", "paths", "obstacles", "cameras", "detections", "people", "frames", "commanded",
+)  # fmt: skip
 SHOWN_AT_FIRST: frozenset[LayerGroup] = frozenset({"voxels", "paths", "obstacles", "detections", "people"})
 _KEPT_PAGES = 200
 

@@ -87,6 +87,8 @@ export function session(told: Partial<SessionBody> = {}): SessionBody {
     cell_view_port: null,
     epoch: `e${started}`,
     cell: { connected: true, reason: '' },
+    devices: [],
+    opening_problem: '',
     stop: null,
     ...told,
   }

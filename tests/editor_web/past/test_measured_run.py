@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from editor_web.past.measured_marker import MeasuredMarker
@@ -12,6 +13,7 @@ from editor_web.past.measured_run import NOT_RECORDED, STILL_ACTIVE, MeasuredRun
 from editor_web.past.telemetry_markers import APART_S
 from engine.event import Event, GoalFinished, GoalSent
 from engine.messages import JointState, Pose, RobotDescription, Wrench
+from engine.messages.device_state import DeviceState
 from engine.skills.arm_control import ArmMode, ArmStatus, ControlSettings
 from tests.editor_web.past_recording import RecordedMessages, write_recording
 
@@ -186,3 +188,23 @@ def test_markers_are_kept_until_the_run_or_its_recording_changes(tmp_path: Path)
     file.unlink()
     write_recording(file, {"left/wrench": [(1.5, force(4.0)), (1.6, force(5.0))]})
     assert [mark.kind for mark in run.markers(events, [file], has_ended=True).marks] == ["contact"]
+
+
+def test_a_real_device_is_marked_where_it_is_enabled_stopped_and_lost(tmp_path: Path) -> None:
+    """How it was at the beginning is no mark."""
+    ready = DeviceState(
+        driver="robotiq",
+        address="here:1",
+        connected=True,
+        enabled=True,
+        mode="enabled",
+        enabled_by="Anna",
+        enabled_for="the area is clear",
+    )
+    hot = msgspec.structs.replace(ready, enabled=False, problem="too hot", fault="too hot", mode="fault")
+    said: RecordedMessages = {"left/gripper/device": [(1.0, ready), (2.0, hot), (3.0, hot), (4.0, ready)]}
+    marks = marks_of([], tmp_path, said)
+    assert [(mark.time_s, mark.device, mark.text) for mark in marks] == [
+        (2.0, "left/gripper", "left/gripper has a fault: too hot"),
+        (4.0, "left/gripper", "left/gripper enabled by Anna: the area is clear"),
+    ]

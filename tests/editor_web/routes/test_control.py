@@ -15,7 +15,7 @@ import pytest
 from editor_web.security.authentication import VIEWER, load_access_tokens
 from editor_web.server import dashboard
 from engine.cell.open_cell import OpenCell
-from engine.event import Event, GateReached, NodeEntered, OperatorChanged, RunSteppedBack
+from engine.event import Event, GateReached, NodeEntered, OperatorChanged, RunSteppedBack, UserdataWritten
 from engine.journal import Journal
 from engine.project.session import Session
 from engine.registry import load_states
@@ -149,6 +149,27 @@ async def test_a_paused_run_is_stepped_back_until_nothing_is_left(project: Path,
         assert (await there.session.wait(run)).outcome == "good"
         over = await there.command(run, "step_back")
         assert over.status_code == 409
+
+
+async def test_a_value_of_a_paused_run_is_replaced(project: Path, loopback: str) -> None:
+    """As the engine does it; what cannot be set is refused with where and why."""
+    async with site(project, loopback) as here:
+        run = await here.start(supervision={"start_paused": True})
+        set_to = {"key": "value", "value": {"mm": [1.5, None]}}
+        answer = await here.command(run, "userdata", **set_to)
+        assert answer.status_code == 200, answer.text
+        written = [each for each in here.session.events(run) if isinstance(each, UserdataWritten)]
+        assert [(each.scope, each.key, each.value) for each in written] == [("", "value", {"mm": [1.5, None]})]
+        large = {"key": "value", "value": list(range(5000))}
+        await here.command(run, "userdata", **large)
+        whole = await here.served.http.get(f"/api/v1/runs/{run}/control/userdata", params={"key": "value"})
+        assert whole.json() == {"scope": "", **large}
+        unknown = await here.command(run, "userdata", key="valeu", value=1)
+        assert (unknown.status_code, unknown.json()["message"]) == (422, "there is no userdata key 'valeu'")
+        assert "value" in unknown.json()["hint"]
+        assert (await here.command(run, "userdata", key="value")).status_code == 422
+        await here.command(run, "resume")
+        assert (await here.command(run, "userdata", **set_to)).status_code == 409
 
 
 async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: str) -> None:

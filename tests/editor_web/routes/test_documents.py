@@ -224,6 +224,15 @@ async def test_the_catalogue_has_states_containers_and_behaviors(client: Editing
     assert (catalogue["entries"], catalogue["names"]) == ([], {})
 
 
+async def test_the_source_of_a_state_is_given_and_that_of_nothing_else(client: EditingClient) -> None:
+    """Whatever path is asked for."""
+    found = (await client.get("/catalogue/states/flow.Wait/source")).json()
+    assert found["text"].splitlines()[found["line"] - 1].startswith("class Wait(")
+    for name in ("flow.Gone", "/etc/passwd", "..%2f..%2fetc%2fpasswd", "engine.registry:Path", "os:PathLike"):
+        answer = await client.get(f"/catalogue/states/{name}/source")
+        assert (answer.status_code, "text" in answer.json()) == (404, False)
+
+
 @pytest.mark.parametrize(
     "document_id",
     [

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from editor_web.telemetry.data_frames import CellStateFrame, DataSubscription, ToolHolds
+from editor_web.telemetry.data_frames import CellStateFrame, DataSubscription, DeviceNow, ToolHolds
 from editor_web.telemetry.page_subscriptions import PageSubscriptions
 from engine.bus import SkillBus
 from engine.clock import LoopClock
 from engine.messages import FramePoses, GripperState, PartPoses, Pose
+from engine.messages.device_state import DeviceLink, DeviceState
 from engine.messages.sensing import CameraInfo, CameraIntrinsics
 from engine.project import BusInspector
 from tests.editor_web.fake_backend import FakeBackend
@@ -69,3 +70,22 @@ async def test_poses_and_held_parts_are_sent_when_they_change() -> None:
         page.look(DataSubscription())
         clock.at_s = 1.2
         assert state_of(page) is None
+
+
+async def test_real_devices_are_sent_with_how_fresh_their_readings_are() -> None:
+    async with SkillBus(Clock()) as bus:
+        backend = FakeBackend()
+        backend.known_inspector = BusInspector(bus)
+        state = DeviceState(driver="robotiq", address="here:1", connected=True, enabled=False, problem="not activated")
+        link = DeviceLink(readings_hz=50.0, longest_gap_s=0.03, age_s=0.01)
+        bus.topic("left/gripper/device", DeviceState).publish(state)
+        bus.topic("left/gripper/link", DeviceLink).provide(lambda: link)
+        bus.topic("right/device", DeviceState).publish(state)
+        page = PageSubscriptions(backend)
+        page.look(DataSubscription(cell=True))
+        frame = state_of(page)
+        assert frame is not None
+        assert frame.devices == {
+            "left/gripper": DeviceNow(state=state, link=link),
+            "right": DeviceNow(state=state, link=None),
+        }

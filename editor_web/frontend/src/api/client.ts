@@ -7,6 +7,7 @@ import type {
   HotChangeResultBody,
   InterruptedRun,
   ControlView,
+  UserdataBody,
   ErrorBody,
   ResumeQuestion,
   ResumeBody,
@@ -131,6 +132,9 @@ export const api = {
   unlock: (run: string, path: string) => command(run, 'unlock', { path }),
   force: (run: string, path: string, outcome: string) => command(run, 'force', { path, outcome }),
   repeat: (run: string, path: string) => command(run, 'repeat', { path }),
+  userdata: (run: string, scope: string, key: string) =>
+    call<UserdataBody>(`/runs/${encodeURIComponent(run)}/control/userdata?${new URLSearchParams({ scope, key }).toString()}`),
+  setUserdata: (run: string, scope: string, key: string, value: unknown) => command(run, 'userdata', { scope, key, value }),
   answer: (run: string, path: string) => command(run, 'answer', { path }),
   autonomy: (run: string, level: string) => command(run, 'autonomy', { level }),
   breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),

@@ -25,6 +25,8 @@ export function invalidateByStreams(client: QueryClient): () => void {
       // Of a document that is gone there is no answer.
       void client.invalidateQueries({ queryKey: queryKeys.referrers, predicate: ({ queryKey }) => !isGone(now, String(queryKey[1])) })
     }
+    // Classes of states say what can be put where, and what is wrong with every behavior.
+    if (now.statesRevision !== before.statesRevision) outdate(queryKeys.catalogue, queryKeys.behaviors, queryKeys.everyBehavior)
     if (now.runs !== before.runs) {
       if (now.runs.length !== before.runs.length) outdate(queryKeys.interrupted)
       if (statuses(now) !== statuses(before)) outdate(queryKeys.pastRuns)

@@ -4,7 +4,16 @@ import { pageStore } from './pageStore'
 
 export type LayerGroup = ShowLayers['groups'][number]
 
-export const LAYER_GROUPS: readonly LayerGroup[] = ['voxels', 'paths', 'obstacles', 'people', 'cameras', 'detections', 'frames']
+export const LAYER_GROUPS: readonly LayerGroup[] = [
+  'voxels',
+  'paths',
+  'obstacles',
+  'people',
+  'cameras',
+  'detections',
+  'frames',
+  'commanded',
+]
 const AT_FIRST: readonly LayerGroup[] = ['voxels', 'paths', 'obstacles', 'people', 'detections']
 const KEPT = 'flexcell.layers'
 

@@ -5,13 +5,16 @@ import type { TaughtReference } from './teaching'
 
 export const queryKeys = {
   behaviors: ['behaviors'],
-  behavior: (id: string) => ['behavior', id] as const,
+  everyBehavior: ['behavior'],
+  behavior: (id: string) => [...queryKeys.everyBehavior, id] as const,
   startData: (behavior: string, path: string) => ['start data', behavior, path] as const,
   interrupted: ['interrupted'],
   cellConnection: ['cell connection'],
   cellItems: ['cell items'],
+  cellDevices: ['cell devices'],
   names: (text: string) => ['names', text] as const,
   catalogue: ['catalogue'],
+  stateSource: (state: string) => [...queryKeys.catalogue, 'source', state] as const,
   usages: (kind: string, name: string) => ['usages', kind, name] as const,
   condition: (behavior: string, point: Breakpoint) => ['condition', behavior, point] as const,
 

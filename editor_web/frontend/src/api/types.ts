@@ -423,15 +423,16 @@ export interface CellItems {
   readonly items: readonly CellItem[]
 }
 
-/** Where the items of the cell are now; at most five per second, and only after a change. `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those of the optical frames of cameras. `tools` are by the name of their arm. */
+/** Where the items of the cell are now; at most five per second, and only after a change. `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those of the optical frames of cameras. `tools` are by the name of their arm, `devices` by their address on the bus. */
 export interface CellStateFrame {
   readonly k: "cell"
   readonly poses: Dict<Pose>
   readonly cameras: Dict<Pose>
   readonly tools: Dict<ToolHolds>
+  readonly devices: Dict<DeviceNow>
 }
 
-/** The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`. While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are arms and world, in the order of the cell. */
+/** The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`. While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are arms and world, in the order of the cell. `real` are the devices with a driver. */
 export interface CellStop {
   readonly number: number
   readonly phase: "released" | "stopped" | "stopping"
@@ -441,6 +442,7 @@ export interface CellStop {
   readonly runs: readonly StoppedRun[]
   readonly arms: readonly ArmRecovery[]
   readonly parts: "absent" | "open" | "reset"
+  readonly real: readonly DeviceRecovery[]
 }
 
 /** The cell was stopped, what is open after it has changed, or it was released; null once it is closed. */
@@ -608,6 +610,61 @@ export interface DemonstrationBody {
   readonly id?: string
 }
 
+/** One device for which the document of the cell names a driver. Attributes: device: Its name in the document: `left`, `left/gripper`. address: Its namespace on the bus, which names the kind of tool: `left/hand`. driver: The name of the driver. simulated: Whether the open cell simulates it instead. can: What the driver can do, in words. cannot: What it cannot do, in words, with the reason where there is one beside the device. proven: What it was tested against, and whether it ever ran on hardware. page: Path of its documentation. enabling: What enabling the device does at it. options: The options of the driver that are not at their defaults. schema: The JSON Schema of the options. problem: Why the driver or its options cannot be read; all else is empty then. */
+export interface DeviceDetails {
+  readonly device: string
+  readonly address: string
+  readonly driver: string
+  readonly simulated: boolean
+  readonly can: readonly string[]
+  readonly cannot: readonly string[]
+  readonly proven: string
+  readonly page: string
+  readonly enabling: string
+  readonly options: Dict<unknown>
+  readonly schema: Dict<unknown>
+  readonly problem: string
+}
+
+/** How fresh the readings of a real device are; the latest value of `<device>/link`. `readings_hz` and `longest_gap_s` are those of the last half second, `age_s` is the age of the last reading. `speed_scaling` is the share of the commanded speed that the controller permits, None where it does not say. */
+export interface DeviceLink {
+  readonly readings_hz: number
+  readonly longest_gap_s: number
+  readonly age_s: number
+  readonly speed_scaling: number | null
+}
+
+/** A real device: whether it may move, and how fresh its readings are. */
+export interface DeviceNow {
+  readonly state: DeviceState
+  readonly link: DeviceLink | null
+}
+
+/** Whether a real device may move after a stop; `problem` is why not, empty if it may. `name` is its address on the bus. A device that does not answer has to be connected again before it is enabled. */
+export interface DeviceRecovery {
+  readonly name: string
+  readonly connected: boolean
+  readonly enabled: boolean
+  readonly problem: string
+}
+
+/** Whether a real device answers and may move; the latest value of `<device>/device`. Attributes: driver: Its driver. address: Where it is connected. connected: Whether it answers. enabled: Whether it may move. problem: Why it does not answer or may not move, empty when `enabled`. fault: Its own fault by name. mode: All of this in one word. firmware: What it says of its firmware; empty if it says nothing. safety: Why its controller does not move, by name; `normal` while it can, empty where it does not say. last_cause: Why it was stopped or lost last; stays after it was enabled again. last_cause_unix_s: When that was; 0 for never. enabled_by: Who has enabled it last, as the person calls themselves. enabled_for: The reason that was given. */
+export interface DeviceState {
+  readonly driver: string
+  readonly address: string
+  readonly connected: boolean
+  readonly enabled: boolean
+  readonly problem: string
+  readonly fault: string
+  readonly mode: "enabled" | "fault" | "lost" | "reading" | "stopped"
+  readonly firmware: string
+  readonly safety: string
+  readonly last_cause: string
+  readonly last_cause_unix_s: number
+  readonly enabled_by: string
+  readonly enabled_for: string
+}
+
 /** The status of a stop at one device; `connected` is false once its process has ended. */
 export interface DeviceStop {
   readonly name: string
@@ -731,6 +788,13 @@ export interface DragKeepAlive {
   readonly k: "held"
 }
 
+/** A device for which the document of the cell names a driver: `left`, `left/gripper`. `simulated` says that the open cell simulates it instead. */
+export interface DrivenDeviceChoice {
+  readonly device: string
+  readonly driver: string
+  readonly simulated: boolean
+}
+
 /** Insert copies of nodes next to them; transitions among them connect the copies. */
 export interface DuplicateNodes {
   readonly edit: "duplicate"
@@ -761,11 +825,12 @@ export interface EditAnswer {
   readonly difference: GraphDifference | null
 }
 
-/** Why no edit was applied; `index` is the edit that failed. */
+/** Why no edit was applied; `index` is the edit that failed, `losses` are those that it did not accept. */
 export interface EditRefusal {
   readonly message: string
   readonly hint: string
   readonly index: number
+  readonly losses: readonly TypeLoss[]
 }
 
 /** A text and the edits to apply, all or none. `graph` is the hash of the text whose graph the page has; the answer then has only the difference, if the server knows that graph too. */
@@ -2098,6 +2163,15 @@ export interface RenameNode {
   readonly name: string
 }
 
+/** Give nodes another type in place; what fits is kept. `kind` is state, behavior, or that of a container or part of a tree; `runs` is what a state or behavior runs. What does not fit is removed, but only if it is in `accepted`; otherwise the edit is refused with all `losses`. */
+export interface ReplaceType {
+  readonly edit: "replace_type"
+  readonly paths: readonly string[]
+  readonly kind: string
+  readonly runs?: string
+  readonly accepted?: readonly TypeLoss[]
+}
+
 /** A request to resume an interrupted run: `answers` by path are `rerun` or an outcome. */
 export interface ResumeBody {
   readonly answers?: Dict<string>
@@ -2367,6 +2441,8 @@ export interface SessionBody {
   readonly cell_view_port: number | null
   readonly epoch: string
   readonly cell: CellConnection
+  readonly devices: readonly DrivenDeviceChoice[]
+  readonly opening_problem: string
   readonly stop: StopEndpoint | null
 }
 
@@ -2424,7 +2500,7 @@ export interface ShowHandle {
 export interface ShowLayers {
   readonly k: "show"
   readonly page: string
-  readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
+  readonly groups: readonly ("cameras" | "commanded" | "detections" | "frames" | "obstacles" | "paths" | "people" | "voxels")[]
 }
 
 /** From the page: what is marked in its 3D view, in the place of what was before. */
@@ -2491,6 +2567,11 @@ export interface SignalField {
   readonly unit: string
 }
 
+/** A request to open the cell anew: `simulated` are the devices that its world simulates instead of their drivers. All others with a driver are real. */
+export interface SimulationBody {
+  readonly simulated: readonly string[]
+}
+
 /** A service or action: its address, request type, documentation and response type. */
 export interface SkillInfo {
   readonly kind: string
@@ -2535,6 +2616,17 @@ export interface StartResultBody {
   readonly run: string
 }
 
+/** The file of a state class; its class statement is from `line` to `end_line`, which count from 1. `file` is relative to the project for a module of the project, absolute for one of an installed package. */
+export interface StateSource {
+  readonly state: string
+  readonly module: string
+  readonly file: string
+  readonly in_project: boolean
+  readonly line: number
+  readonly end_line: number
+  readonly text: string
+}
+
 /** A state; `group` is the part of its name before the last dot, `icon` the name of its icon. */
 export interface StateView {
   readonly name: string
@@ -2547,6 +2639,12 @@ export interface StateView {
   readonly parameters: readonly KeyView[]
   readonly inputs: readonly KeyView[]
   readonly outputs: readonly KeyView[]
+}
+
+/** Modules of the project's own states were loaded anew, or could not be; how often since the server has started. */
+export interface StatesChanged {
+  readonly k: "states"
+  readonly revision: number
 }
 
 /** The status of a behavior tree node changed: success, failure, running, skipped or invalid. A leaf is invalid when it is halted or its result is discarded. It is running when it has ended but is not ticked because the condition of an enclosing `while_do_else` is running; its status is reported at its next tick. */
@@ -2642,6 +2740,7 @@ export interface SweepDocument {
   readonly description?: string
   readonly behavior: string
   readonly cell?: string | null
+  readonly simulate?: readonly string[]
   readonly store?: string | null
   readonly parameters?: Dict<unknown>
   readonly inputs?: Dict<unknown>
@@ -2944,6 +3043,14 @@ export interface TrimInterval {
   readonly end_s: number
 }
 
+/** What another type of a node cannot keep: where it is, what it is, its value as JSON, and why it does not fit. */
+export interface TypeLoss {
+  readonly path: string
+  readonly item: string
+  readonly value: string
+  readonly reason: string
+}
+
 /** An expression that makes a name of the cell in a run. */
 export interface UndecidedName {
   readonly path: string
@@ -3009,6 +3116,13 @@ export interface UserdataAppended {
   readonly time_s: number
   readonly path: string
   readonly scope: string
+  readonly key: string
+  readonly value: unknown
+}
+
+/** A value of the userdata of a run, whole; the empty scope is that of the behavior. */
+export interface UserdataBody {
+  readonly scope?: string
   readonly key: string
   readonly value: unknown
 }
@@ -3101,9 +3215,9 @@ export interface WatchValue {
 
 export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame
 
-export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
+export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | ReplaceType | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 
-export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | StatesChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 

@@ -11,6 +11,7 @@ import { showKeys, useKeyMap, useKeyOf } from '../api/keyMap'
 import { findUsages, useUsages } from '../api/usages'
 import { openSearch, type PageCommand } from '../api/search'
 import { showPresence } from '../api/presence'
+import { useRealDevices } from '../api/realDevices'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
 import type { NameHit, RunView } from '../api/types'
@@ -19,6 +20,7 @@ import { Loading } from '../components/Loading'
 import { NoticePlace } from '../components/NoticePlace'
 import { SIDE_ITEM, SideLink } from '../components/SideLink'
 import { ViewBoundary } from '../components/ViewBoundary'
+import { devicesWords } from '../document/devices'
 import { isActive } from '../document/runState'
 import { nameOfPath } from '../document/path'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
@@ -51,6 +53,7 @@ import { usePageKeys } from './usePageKeys'
 const StopGuide = lazyView(async () => (await import('./StopGuide')).StopGuide)
 const KeySheet = lazyView(async () => (await import('../features/keys/KeySheet')).KeySheet)
 const UsagesDialog = lazyView(async () => (await import('../features/usages/UsagesDialog')).UsagesDialog)
+const RealDevicesQuestion = lazyView(async () => (await import('../features/cell/RealDevicesQuestion')).RealDevicesQuestion)
 const Tour = lazyView(async () => (await import('../features/tour/Tour')).Tour)
 
 export function App() {
@@ -67,6 +70,7 @@ export function App() {
   const isCell = route.page === 'cell'
   const isTouring = useTour((s) => s.isOn)
   const used = useUsages((s) => s.asked)
+  const isAsked = useRealDevices((s) => s.answer !== undefined)
   const hasKeySheet = useKeyMap((s) => s.isShown)
   const searchKey = useKeyOf('search').text
   const isStopped = useLive((s) => s.stop !== null)
@@ -113,9 +117,12 @@ export function App() {
         <ViewBoundary name="Header">
           <Header
             cellName={session?.cell_name ?? ''}
+            devices={devicesWords(session)}
             mayOperate={session?.role === 'operator'}
             shown={shown}
-            active={runs.filter(isActive)}
+            // What one may do with a run is shown with it.
+            active={session ? runs.filter(isActive) : []}
+            isKnown={session !== undefined}
             onHome={() => open('/')}
             isCell={isCell}
             onCell={() => open(CELL_HREF)}
@@ -182,6 +189,13 @@ export function App() {
         <ViewBoundary name="Usages">
           <WhileLoading value={null}>
             <UsagesDialog asked={used} onOpen={(document, path) => open(editHref(document, path))} />
+          </WhileLoading>
+        </ViewBoundary>
+      )}
+      {isAsked && (
+        <ViewBoundary name="Real devices">
+          <WhileLoading value={null}>
+            <RealDevicesQuestion />
           </WhileLoading>
         </ViewBoundary>
       )}

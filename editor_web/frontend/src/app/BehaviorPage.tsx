@@ -1,6 +1,6 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
 import { Box, Button, Flex } from '@mantine/core'
-import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
+import { IconPencil } from '@tabler/icons-react'
 import { useEffect, useMemo, useState } from 'react'
 import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { useLive } from '../api/live'
@@ -47,7 +47,9 @@ import { LayoutChoice } from './LayoutChoice'
 import classes from './pages.module.css'
 import { useRunLayout, type RunLayout } from './runLayout'
 import { InterruptedHere } from './InterruptedHere'
-import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
+import { ParameterForm } from '../features/parameters/ParameterForm'
+import { StartButton } from '../features/parameters/StartButton'
+import { StartProvider } from '../features/parameters/StartProvider'
 import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
@@ -82,7 +84,11 @@ export function BehaviorPage(props: BehaviorPageProps) {
   }, [id, generation])
   if (fetched.problem) return <Empty title="This behavior cannot be shown">{fetched.problem}</Empty>
   if (!fetched.value) return <div role="status" aria-label="Loading" />
-  return <Loaded {...props} behavior={fetched.value} />
+  return (
+    <StartProvider behavior={fetched.value} onStarted={props.onStarted}>
+      <Loaded {...props} behavior={fetched.value} />
+    </StartProvider>
+  )
 }
 
 function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, onMade }: BehaviorPageProps & { behavior: BehaviorView }) {
@@ -153,6 +159,11 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
     },
   })
 
+  function showParameters(): void {
+    if (arrangement === '3d') setLayout('operate')
+    setTab('parameters')
+  }
+
   /** The view of the failure comes forward, where the layout has it. */
   function showFailure(): void {
     if (layout === '3d') setLayout('operate')
@@ -209,13 +220,11 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
     <TabBody>
       <ParameterForm
         behavior={behavior}
-        obstacle={obstacle}
         place={placeOf(
           session,
           active.filter((each) => each.behavior !== behavior.id),
         )}
         terminal={`flexcell run ${behavior.id} --clock virtual`}
-        onStarted={onStarted}
         run={run?.id}
       />
     </TabBody>
@@ -237,10 +246,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
     mayOperate,
     hasView,
     onEdit,
-    onParameters: () => {
-      if (arrangement === '3d') setLayout('operate')
-      setTab('parameters')
-    },
+    onParameters: showParameters,
     onStarted,
   }
   const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show, page })
@@ -268,17 +274,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit, o
         <Button variant="default" size="sm" leftSection={<IconPencil size={15} aria-hidden />} onClick={() => onEdit(selected ?? '')}>
           Edit
         </Button>
-        <Button
-          type="submit"
-          form={FORM_ID}
-          data-tour="start"
-          size="sm"
-          leftSection={<IconPlayerPlayFilled size={14} aria-hidden />}
-          disabled={obstacle !== undefined}
-          title={obstacle}
-        >
-          Start
-        </Button>
+        <StartButton obstacle={obstacle} onWrong={showParameters} />
       </PageHead>
       <ViewBoundary name="Adapt">
         <AdaptHere behavior={behavior.id} obstacle={behavior.fit.obstacle} mayEdit={mayOperate} onMade={onMade} />

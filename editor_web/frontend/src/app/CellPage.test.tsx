@@ -3,6 +3,7 @@ import { screen, waitFor, within } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
 import { live, robot, server, session, show } from '../../testing/page'
 import { Refusal } from '../../testing/server'
+import { keepSession } from '../api/session'
 import type { CellItems } from '../api/types'
 import { CellPage } from './CellPage'
 
@@ -44,7 +45,7 @@ function page(item: string, onOpen = vi.fn(), role = 'operator') {
 function told(state: object): void {
   const socket = server().socket('/data')
   socket.accept()
-  socket.tell({ k: 'cell', poses: {}, cameras: {}, tools: {}, ...state })
+  socket.tell({ k: 'cell', poses: {}, cameras: {}, tools: {}, devices: {}, ...state })
 }
 
 it('shows the items with what they do, hold, and where they are', async () => {
@@ -146,4 +147,38 @@ it('says why the cell cannot be read', async () => {
   live()
   page('')
   expect(await screen.findByText(/the server is ending/)).toBeVisible()
+})
+
+it('says of a device with a driver whether it is real', async () => {
+  const known = session({ devices: [{ device: 'left/gripper', driver: 'robotiq', simulated: false }] })
+  server().on('GET /session', known)
+  keepSession(known)
+  server().on('GET /cell/items', CELL)
+  live()
+  page('robots/left/gripper')
+  expect(await screen.findByText('robotiq, real')).toBeVisible()
+})
+
+it('shows of a real tool in the tree that it may not move, and beside it how it is enabled', async () => {
+  const known = session({ devices: [{ device: 'left/gripper', driver: 'robotiq', simulated: false }] })
+  const details = { device: 'left/gripper', address: 'left/gripper', driver: 'robotiq', simulated: false, options: {}, schema: {} }
+  const words = {
+    can: ['gripper commands'],
+    cannot: [],
+    proven: 'Never run on hardware.',
+    page: '',
+    enabling: 'Activates it.',
+    problem: '',
+  }
+  server().on('GET /cell/items', CELL)
+  server().on('GET /cell/devices', [{ ...details, ...words }])
+  live()
+  show(<CellPage item="robots/left/gripper" session={known} isNarrow={false} onOpen={vi.fn()} />)
+  const tree = await screen.findByRole('tree', { name: 'Items of the cell' })
+  const state = { driver: 'robotiq', address: 'here:1', connected: true, enabled: false, problem: 'not activated', mode: 'reading' }
+  const rest = { fault: '', firmware: '', safety: '', last_cause: '', last_cause_unix_s: 0, enabled_by: '', enabled_for: '' }
+  told({ devices: { 'left/gripper': { state: { ...state, ...rest }, link: null } } })
+  expect(within(tree).getByText('read only, not enabled')).toBeVisible()
+  expect(await screen.findByRole('table', { name: 'Device left/gripper' })).toHaveTextContent('not activated')
+  expect(screen.getByRole('button', { name: 'Enable left/gripper…' })).toBeEnabled()
 })

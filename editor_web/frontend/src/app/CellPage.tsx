@@ -2,7 +2,8 @@
 import { Box } from '@mantine/core'
 import { useMemo, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
-import { cellItemsQuery } from '../api/cellItems'
+import { Refusal } from '../components/Refusal'
+import { cellDevicesQuery, cellItemsQuery } from '../api/cellItems'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
 import { useAnswer } from '../api/queryClient'
@@ -13,11 +14,13 @@ import { OpenedTabs } from '../components/OpenedTabs'
 import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { Splitter } from '../components/Splitter'
-import { cellTree, nodeAt } from '../document/cellTree'
+import { cellTree, deviceOf, nodeAt } from '../document/cellTree'
 import { CellFrame } from '../features/cell/CellFrame'
+import { DriverSwitch } from '../features/cell/DriverSwitch'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
+import { DevicePanel } from '../features/devices/DevicePanel'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
 
@@ -31,6 +34,7 @@ interface CellPageProps {
 
 export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const { value: cell, problem } = useAnswer(cellItemsQuery())
+  const { value: devices } = useAnswer(cellDevicesQuery((session?.devices ?? []).length > 0))
   const [state, setState] = useState<CellStateFrame>()
   useData({ number: 0, traffic: false, topic: '', fields: [], run: '', goals: '', cell: true }, (frame) => {
     if (frame.k === 'cell') setState(frame)
@@ -51,7 +55,8 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
       <CellItemTree tree={tree} now={now} selected={item} onSelect={select} />
     </Panel>
   )
-  const details = node ? (
+  const driven = devices?.find((each) => `robots/${each.device}` === node?.item?.path)
+  const panel = node ? (
     <ItemDetails
       node={node}
       cell={cell}
@@ -59,6 +64,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
       hasCellView={hasCellView(session)}
       onSelect={select}
       onTeach={session?.role === 'operator' ? () => onOpen(TEACH_HREF) : undefined}
+      device={driven && <DevicePanel key={driven.device} details={driven} now={deviceOf(node, state)} />}
     />
   ) : (
     <Panel title="Details">
@@ -86,9 +92,16 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   )
   return (
     <>
-      <PageHead title={cell.cell} words={cell.description} />
+      <PageHead title={cell.cell} words={cell.description}>
+        <DriverSwitch session={session} />
+      </PageHead>
+      {session?.opening_problem && (
+        <Refusal isWide title="The cell was not opened as it was asked for.">
+          It is open as it was before. {session.opening_problem}
+        </Refusal>
+      )}
       {isNarrow ? (
-        <OpenedTabs label="Cell" bodies={{ Items: items, Details: details, '3D view': view }} asked={asked} />
+        <OpenedTabs label="Cell" bodies={{ Items: items, Details: panel, '3D view': view }} asked={asked} />
       ) : (
         <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
           <Pane id="cell-items" defaultSize="30%" minSize="18%">
@@ -100,7 +113,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
           </Pane>
           <Splitter label="Width of the cell" />
           <Pane id="cell-details" defaultSize="28%" minSize="18%">
-            {details}
+            {panel}
           </Pane>
         </Group>
       )}

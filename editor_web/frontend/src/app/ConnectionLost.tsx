@@ -2,9 +2,7 @@
 import { Alert } from '@mantine/core'
 import { IconPlugConnectedX } from '@tabler/icons-react'
 import { useLive } from '../api/live'
-
-/** The kit's titles have the colour of the alert, which is too faint on its own light ground. */
-const READABLE = { title: { color: 'var(--text)' } }
+import { READABLE_TITLE } from '../components/alertStyles'
 
 export function ConnectionLost() {
   const connection = useLive((s) => s.connection)
@@ -16,7 +14,7 @@ export function ConnectionLost() {
         radius={0}
         icon={<IconPlugConnectedX size={18} aria-hidden />}
         title="The server does not answer"
-        styles={READABLE}
+        styles={READABLE_TITLE}
         role="alert"
       >
         What you see may be out of date. STOP still works. Trying again; the page goes on by itself once the server is back.

@@ -13,6 +13,8 @@ function Bar(told: Partial<HeaderProps>) {
   return (
     <Header
       cellName="bench"
+      devices=""
+      isKnown
       mayOperate
       shown={undefined}
       active={[]}

@@ -1,6 +1,6 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
-import { ActionIcon, Box, Button, Group, Text, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
-import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
+import { ActionIcon, Badge, Box, Button, Group, Text, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
+import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconPlugConnected, IconSun } from '@tabler/icons-react'
 import { useState, type MouseEvent } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
@@ -16,8 +16,15 @@ import { CELL_HREF, RUNS_HREF, TEACH_HREF } from './route'
 
 const People = lazyView(async () => (await import('../features/presence/People')).People)
 
+/** The room of one person, kept free until it is known who is there. */
+const OWN_PX = 26
+
 export interface HeaderProps {
   readonly cellName: string
+  /** Which devices are real; empty for a cell without drivers. */
+  readonly devices: string
+  /** Is it known which cell this is, and what one may do? */
+  readonly isKnown: boolean
   readonly mayOperate: boolean
   /** The run of the page. */
   readonly shown: RunView | undefined
@@ -32,7 +39,21 @@ export interface HeaderProps {
   readonly onRuns: () => void
 }
 
-export function Header({ cellName, mayOperate, shown, active, onHome, isCell, onCell, isTeaching, onTeach, onRun, onRuns }: HeaderProps) {
+export function Header({
+  cellName,
+  devices,
+  isKnown,
+  mayOperate,
+  shown,
+  active,
+  onHome,
+  isCell,
+  onCell,
+  isTeaching,
+  onTeach,
+  onRun,
+  onRuns,
+}: HeaderProps) {
   // Of several it is the one of the page, or none: nobody is to stop a run that was not meant.
   const named = active.find((run) => run.id === shown?.id) ?? (active.length === 1 ? active[0] : undefined)
   const others = active.length - 1
@@ -71,12 +92,29 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
           </PageLink>
         </Box>
       )}
-      <PageLink href={TEACH_HREF} className={`${classes.link} pick-row`} isCurrent={isTeaching} label="Teach" onOpen={onTeach}>
-        <IconHandFinger size={16} aria-hidden />
-        <Text span inherit visibleFrom="xs">
-          Teach
-        </Text>
-      </PageLink>
+      {devices && (
+        <Badge
+          variant="outline"
+          color={devices.startsWith('Real') ? 'orange' : 'gray'}
+          c="var(--text)"
+          tt="none"
+          flex="0 1 auto"
+          miw={0}
+          maw="14rem"
+          title={devices}
+          leftSection={devices.startsWith('Real') ? <IconPlugConnected size={13} aria-hidden /> : undefined}
+        >
+          {devices}
+        </Badge>
+      )}
+      {isKnown && (
+        <PageLink href={TEACH_HREF} className={`${classes.link} pick-row`} isCurrent={isTeaching} label="Teach" onOpen={onTeach}>
+          <IconHandFinger size={16} aria-hidden />
+          <Text span inherit visibleFrom="xs">
+            Teach
+          </Text>
+        </PageLink>
+      )}
       <ConnectionLabel />
       <Box flex={1} />
       {!named && active.length > 1 && (
@@ -121,9 +159,11 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isCell, on
           )}
         </div>
       )}
-      <WhileLoading value={null}>
-        <People />
-      </WhileLoading>
+      <Box miw={OWN_PX}>
+        <WhileLoading value={null}>
+          <People />
+        </WhileLoading>
+      </Box>
       {named && mayOperate && <StopButton run={named} />}
       {/* On a phone the commands of a run take its place. */}
       <Box {...(named && { visibleFrom: 'xs' })}>

@@ -112,12 +112,14 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
 
 function CellFoot() {
   return (
-    <Box pos="relative">
+    <>
       {/* They lie over the view above: it keeps its height, and the arms their place. */}
-      <Box pos="absolute" bottom="100%" left={0} right={0} bg="var(--surface)" style={{ zIndex: 1 }}>
-        <BlockedPaths />
+      <Box pos="relative" flex="none">
+        <Box pos="absolute" bottom="100%" left={0} right={0} bg="var(--surface)" style={{ zIndex: 1 }}>
+          <BlockedPaths />
+        </Box>
       </Box>
       <RobotStrip />
-    </Box>
+    </>
   )
 }

@@ -2,6 +2,7 @@
 import { Button, Code, Stack, Text, TextInput } from '@mantine/core'
 import { IconLogout } from '@tabler/icons-react'
 import { useEffect, useState, type FormEvent } from 'react'
+import { DialogFooter } from '../components/DialogFooter'
 import { api, wordsOf } from '../api/client'
 import { logIn } from '../api/logIn'
 import { useSession } from '../api/session'
@@ -73,14 +74,11 @@ function LogInForm() {
         value={token}
         onChange={(event) => setToken(event.currentTarget.value)}
       />
-      {problem && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
-      <Button type="submit" disabled={isAsking}>
-        {isAsking ? 'Logging in' : 'Log in'}
-      </Button>
+      <DialogFooter refusal={problem}>
+        <Button type="submit" disabled={isAsking}>
+          {isAsking ? 'Logging in' : 'Log in'}
+        </Button>
+      </DialogFooter>
     </Stack>
   )
 }

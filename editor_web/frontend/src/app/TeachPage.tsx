@@ -1,8 +1,9 @@
 /** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
-import { Box, Flex, VisuallyHidden } from '@mantine/core'
+import { Box, Button, Flex, VisuallyHidden } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { connectTeach, endPreview, useTeach } from '../api/teaching'
+import { mayMoveDevices, useMayMove } from '../api/realDevices'
 import { hasCellView } from '../api/session'
 import type { ArmInfo, SessionBody } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
@@ -35,6 +36,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
   const [chosen, setChosen] = useState('')
   useEffect(connectTeach, [])
   useButtons()
+  const mayMove = useMayMove()
   const arm = arms?.find((each) => each.name === chosen) ?? arms?.[0]
   const cell = (
     <Panel
@@ -45,7 +47,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
           <Box flex={1} />
           {hasCellView(session) && isPreviewing && <CommandButton label="Hide the ghosts" tone="quiet" onPress={endPreview} />}
           {hasCellView(session) && <ShowMenu />}
-          {hasCellView(session) && session?.role === 'operator' && <HandleMenu />}
+          {hasCellView(session) && session?.role === 'operator' && mayMove && <HandleMenu />}
         </>
       }
       foot={<RobotStrip />}
@@ -66,7 +68,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
           {isNarrow ? (
             <div style={{ flex: 'none' }}>
               <div style={{ height: '42vh' }}>{cell}</div>
-              <Tabs arms={arms} arm={arm} />
+              <Tabs arms={arms} arm={arm} mayMove={mayMove} />
             </div>
           ) : (
             <Group orientation="horizontal" style={{ flex: 1, minHeight: 0 }}>
@@ -75,7 +77,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
               </Pane>
               <Splitter label="Width of the cell" />
               <Pane id="teach-tabs" defaultSize="44%" minSize="30%">
-                <Tabs arms={arms} arm={arm} />
+                <Tabs arms={arms} arm={arm} mayMove={mayMove} />
               </Pane>
             </Group>
           )}
@@ -85,10 +87,23 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
   )
 }
 
-function Tabs({ arms, arm }: { readonly arms: readonly ArmInfo[]; readonly arm: ArmInfo }) {
+interface TabsProps {
+  readonly arms: readonly ArmInfo[]
+  readonly arm: ArmInfo
+  readonly mayMove: boolean
+}
+
+function Tabs({ arms, arm, mayMove }: TabsProps) {
   const names = arms.map((each) => each.name)
   const bodies = {
-    Move: (
+    Move: !mayMove ? (
+      <Empty title="This cell has real devices">
+        They move once you have said that they may.
+        <Button size="xs" mt="sm" onClick={() => void mayMoveDevices()}>
+          Let them move
+        </Button>
+      </Empty>
+    ) : (
       <>
         <JogPanel key={arm.name} arm={arm} />
         <LeadPanel key={`lead ${arm.name}`} arm={arm} />

@@ -7,13 +7,16 @@ export interface NoticeProps {
   readonly children: ReactNode
   readonly tools?: ReactNode
   readonly role?: 'alert'
+  /** Inside of a panel or a dialog, instead of across the page. */
+  readonly isInset?: boolean
 }
 
-const EDGES = { borderBottom: '1px solid var(--line)', borderInlineStart: '4px solid var(--failed)', overflowWrap: 'anywhere' } as const
+const EDGE = { borderInlineStart: '4px solid var(--failed)', overflowWrap: 'anywhere' } as const
+const ACROSS = { ...EDGE, borderBottom: '1px solid var(--line)' } as const
 
-export function Notice({ icon, children, tools, role }: NoticeProps) {
+export function Notice({ icon, children, tools, role, isInset = false }: NoticeProps) {
   return (
-    <Group gap="xs" px={16} py="3xs" fz="0.86rem" bg="var(--failed-soft)" style={EDGES} role={role}>
+    <Group gap="xs" px={isInset ? 'xs' : 16} py="3xs" fz="0.86rem" bg="var(--failed-soft)" style={isInset ? EDGE : ACROSS} role={role}>
       <Text span inherit c="var(--failed)" display="flex">
         {icon}
       </Text>

@@ -21,6 +21,7 @@ const STATE: CellStateFrame = {
   },
   cameras: { eye: { xyz: [0, 0, 2], xyzw: [0, 0, 0, 1], frame: 'world' } },
   tools: { left: { held: true, part: 'disk' } },
+  devices: {},
 }
 
 function item(path: string, kind: CellItem['kind'], told: Partial<CellItem> = {}): CellItem {

@@ -1,5 +1,6 @@
 /** The tree of a cell: its items by kind, a tool below its robot, and the frames by what they belong to. Pure. */
-import type { CellItem, CellStateFrame, Pose, RobotLive } from '../api/types'
+import type { CellItem, CellStateFrame, DeviceNow, Pose, RobotLive } from '../api/types'
+import { deviceMode } from './devices'
 import { lookup, type Dict } from './dict'
 import { modeWords, robotLook } from './robotMode'
 import type { Status } from './runState'
@@ -126,15 +127,27 @@ export function holderOf(part: string, state: CellStateFrame | undefined): strin
   return Object.entries(state?.tools ?? {}).find(([, tool]) => tool?.held && tool.part === part)?.[0]
 }
 
+/** A robot or tool that is real, as its driver tells it; a tool is below its robot, by the name of its kind. */
+export function deviceOf(node: CellNode, state: CellStateFrame | undefined): DeviceNow | undefined {
+  const name = node.item?.name ?? ''
+  if (node.kind === 'robot') return state && lookup(state.devices, name)
+  if (node.kind !== 'tool') return undefined
+  return Object.entries(state?.devices ?? {}).find(([address]) => address.startsWith(`${name}/`))?.[1]
+}
+
 /** The state of an item in a few words, with its look; undefined where it has none, or nothing is known. */
 export function stateWords(node: CellNode, now: CellNow): { readonly words: string; readonly look: Status } | undefined {
   const name = node.item?.name ?? ''
   switch (node.kind) {
     case 'robot': {
       const robot = lookup(now.robots, name)
+      const device = deviceOf(node, now.state)
+      if (device && !device.state.enabled) return deviceMode(device.state)
       return robot && { words: [modeWords(robot), robot.activity].filter(Boolean).join(' '), look: robotLook(robot.mode) }
     }
     case 'tool': {
+      const device = deviceOf(node, now.state)
+      if (device && !device.state.enabled) return deviceMode(device.state)
       const tool = now.state && lookup(now.state.tools, name)
       if (!tool) return undefined
       return { words: tool.held ? `holds ${tool.part === '?' || !tool.part ? 'a part' : tool.part}` : 'holds nothing', look: 'idle' }

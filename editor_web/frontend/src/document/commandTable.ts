@@ -75,6 +75,7 @@ const BUILD = table('editor', 'Build', [
   ['auto', 'Add obvious transitions', 'w'],
   ['initial', 'Let the machine begin with the selected node', 'i'],
   ['rename', 'Rename', 'F2'],
+  ['replace', 'Replace what the selected nodes are: another state, behavior or container', 'Shift+r'],
   ['disable', 'Disable the selected nodes, or enable them again', 'x'],
   ['note', 'Add a note to the selected node, or to the container on the canvas', 'n'],
   ['remove', 'Delete', 'Delete', 'Backspace'],
@@ -104,6 +105,7 @@ const ARRANGE = table('editor', 'Arrange', [
 const MOVE = table('editor', 'Move around', [
   ['all', 'Select everything here', 'Ctrl+a'],
   ['alike', 'Select every node that runs the same'],
+  ['source', 'Show the Python source of what the selected node runs', 'Alt+F12'],
   ['usages', 'Find usages of what the selected node runs', 'Shift+F12'],
   ['enter', 'Go into the selected container or behavior, or to the form of a state', 'Enter'],
   ['form', 'Go to the form of the selected node or container', 'e'],

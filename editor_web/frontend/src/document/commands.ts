@@ -26,6 +26,7 @@ export type Command =
   | 'force'
   | 'repeat'
   | 'breakpoint'
+  | 'userdata'
 
 export interface Situation {
   readonly role: string
@@ -52,6 +53,7 @@ export function disabledReason(command: Command, now: Situation): string | undef
     case 'step':
       return control.paused ? undefined : 'pause the run first'
     case 'back':
+    case 'userdata':
       if (!control.paused) return 'pause the run first'
       return control.stepping ? 'the run is stepping' : undefined
     case 'change':

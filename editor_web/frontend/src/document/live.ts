@@ -41,6 +41,8 @@ export interface LiveState {
   readonly robots: Dict<RobotLive>
   /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
   readonly documents: Dict<string | null>
+  /** How often modules of the project's own states were loaded anew, as far as this page was told. */
+  readonly statesRevision: number
   /** Sweeps that are being executed, or have ended since the page was loaded. */
   readonly sweeps: Dict<SweepLive>
   /** The latest stop of the cell, until it is closed. */
@@ -73,6 +75,7 @@ export const EMPTY: LiveState = {
   lockReasons: {},
   robots: {},
   documents: {},
+  statesRevision: 0,
   sweeps: {},
   stop: null,
   present: [],
@@ -95,6 +98,8 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
       return frame.run !== state.run || frame.after !== state.seq ? 'gap' : withDelta(state, frame, atMs)
     case 'documents':
       return { ...state, documents: { ...state.documents, ...frame.changed } }
+    case 'states':
+      return { ...state, statesRevision: frame.revision }
     case 'sweeps':
       return { ...state, sweeps: { ...state.sweeps, ...frame.changed } }
     case 'stop':

@@ -24,6 +24,7 @@ const STOP: CellStop = {
   runs: [],
   arms: [ARM],
   parts: 'absent',
+  real: [],
 }
 
 function states(told: Partial<CellStop>): Readonly<Record<string, StepState>> {
@@ -36,8 +37,17 @@ function withArm(told: Partial<ArmRecovery>): Partial<CellStop> {
 
 describe('the steps after a stop', () => {
   it('lead from rest to the runs', () => {
-    expect(stepsOf(STOP).map((step) => step.id)).toEqual(['rest', 'parts', 'jog', 'home', 'reset', 'release', 'runs'])
-    expect(states({})).toEqual({ rest: 'done', parts: 'none', jog: 'open', home: 'open', reset: 'none', release: 'open', runs: 'none' })
+    expect(stepsOf(STOP).map((step) => step.id)).toEqual(['rest', 'enable', 'parts', 'jog', 'home', 'reset', 'release', 'runs'])
+    expect(states({})).toEqual({
+      rest: 'done',
+      enable: 'none',
+      parts: 'none',
+      jog: 'open',
+      home: 'open',
+      reset: 'none',
+      release: 'open',
+      runs: 'none',
+    })
   })
 
   it('ask for a decision about each part that is held', () => {
@@ -50,6 +60,15 @@ describe('the steps after a stop', () => {
   it('need no jogging where every arm is at home, and are done with it where one has moved', () => {
     expect(states(withArm({ at_home: true }))).toMatchObject({ jog: 'none', home: 'done' })
     expect(states(withArm({ has_moved: true })).jog).toBe('done')
+  })
+
+  it('ask to enable real devices that may not move, after lost ones were connected again', () => {
+    const device = { name: 'left', connected: true, enabled: false, problem: 'protective stop' }
+    expect(states({ real: [device] }).enable).toBe('open')
+    expect(nextStep(stepsOf({ ...STOP, real: [device] }))).toBe('enable')
+    expect(states({ real: [{ ...device, enabled: true, problem: '' }] }).enable).toBe('done')
+    const lost = stepsOf({ ...STOP, real: [{ ...device, connected: false }] }).find((step) => step.id === 'enable')
+    expect(lost).toMatchObject({ state: 'problem', words: 'left: connect the cell again first' })
   })
 
   it('say which arm has no home', () => {

@@ -1,7 +1,7 @@
 /** The way back after a stop of the cell, as steps with their states, from what the server tells of the stop. Pure. */
 import type { ArmRecovery, CellStop, StoppedDevice } from '../api/types'
 
-export type StepId = 'rest' | 'parts' | 'jog' | 'home' | 'reset' | 'release' | 'runs'
+export type StepId = 'rest' | 'enable' | 'parts' | 'jog' | 'home' | 'reset' | 'release' | 'runs'
 /** `problem` is a step that has failed or misses something; `none` one that is not needed. */
 export type StepState = 'done' | 'open' | 'problem' | 'none'
 
@@ -17,7 +17,16 @@ export const STATE_WORDS: Readonly<Record<StepState, string>> = { done: 'done', 
 
 /** The steps in their order; the same for everybody who looks, as the server keeps what was done. */
 export function stepsOf(stop: CellStop): readonly RecoveryStep[] {
-  return [restStep(stop), partsStep(stop), jogStep(stop), homeStep(stop), resetStep(stop), releaseStep(stop), runsStep(stop)]
+  return [
+    restStep(stop),
+    enableStep(stop),
+    partsStep(stop),
+    jogStep(stop),
+    homeStep(stop),
+    resetStep(stop),
+    releaseStep(stop),
+    runsStep(stop),
+  ]
 }
 
 /** The first step that somebody has to do something about. */
@@ -57,6 +66,16 @@ function restStep(stop: CellStop): RecoveryStep {
   const moving = stop.devices.filter((device) => device.status === 'stopping')
   if (moving.length > 0) return { ...step, state: 'open', words: `${names(moving)}: coming to rest` }
   return { ...step, state: 'done', words: stop.devices.length > 0 ? 'confirmed by every device' : 'the cell has no devices' }
+}
+
+function enableStep({ real }: CellStop): RecoveryStep {
+  const step = { id: 'enable', title: 'Enable real devices' } as const
+  if (real.length === 0) return { ...step, state: 'none', words: 'every device is simulated' }
+  const lost = real.filter((device) => !device.connected)
+  if (lost.length > 0) return { ...step, state: 'problem', words: `${names(lost)}: connect the cell again first` }
+  const stopped = real.filter((device) => !device.enabled)
+  if (stopped.length > 0) return { ...step, state: 'open', words: `${names(stopped)}: may not move` }
+  return { ...step, state: 'done', words: `${names(real)}: may move` }
 }
 
 function partsStep(stop: CellStop): RecoveryStep {

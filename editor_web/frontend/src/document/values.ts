@@ -31,6 +31,22 @@ function scalar(value: unknown): string {
   return value === null ? 'none' : plainText(value)
 }
 
+/** What a value is, in a word: `a number`, `a list`. */
+export function kindOfValue(value: unknown): string {
+  if (value === null) return 'nothing'
+  if (Array.isArray(value)) return 'a list'
+  switch (typeof value) {
+    case 'number':
+      return 'a number'
+    case 'boolean':
+      return 'true or false'
+    case 'string':
+      return 'text'
+    default:
+      return 'a mapping'
+  }
+}
+
 /** Text as it is, anything else as JSON; undefined is empty. */
 export function plainText(value: unknown): string {
   return typeof value === 'string' ? value : (JSON.stringify(value) ?? '')

@@ -25,10 +25,18 @@ export function problemsOf({ findings, targets, root }: Pick<Draft, 'findings' |
   return all
 }
 
+const NONE: ReadonlySet<string> = new Set()
+const emptyOf = new WeakMap<EditNode, ReadonlySet<string>>()
+
 /** The paths of containers without anything in them: a document that has one is not finished, and no mistake was made. */
 export function emptyContainers(root: EditNode | undefined): ReadonlySet<string> {
-  const empty = root ? allNodes(root).filter((node) => isHolder(node) && node.children.length === 0) : []
-  return new Set(empty.map((node) => node.path))
+  if (!root) return NONE
+  const known = emptyOf.get(root)
+  if (known) return known
+  const empty = allNodes(root).filter((node) => isHolder(node) && node.children.length === 0)
+  const paths = new Set(empty.map((node) => node.path))
+  emptyOf.set(root, paths)
+  return paths
 }
 
 /** What is left to do in a document that is not finished; empty for a finished one. */

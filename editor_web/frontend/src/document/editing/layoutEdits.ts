@@ -1,7 +1,7 @@
 /** Edits of positions and notes, which mean nothing to a run: the page does them itself, and the server writes them. Pure. */
 import { lookup } from '../dict'
 import type { Edit } from './edits'
-import { nodeOf, type EditNode } from './model'
+import { nodeOf, withNode, type EditNode } from './model'
 
 /** Are these all edits of positions or notes? */
 export function areOfLayout(edits: readonly Edit[]): boolean {
@@ -22,10 +22,6 @@ export function withLayout(root: EditNode, edits: readonly Edit[]): EditNode {
 }
 
 function changed(root: EditNode, path: string, change: Partial<EditNode>): EditNode {
-  if (!nodeOf(root, path)) return root
-  if (root.path === path) return { ...root, ...change }
-  const children = root.children.map((child) =>
-    path === child.path || path.startsWith(`${child.path}/`) ? changed(child, path, change) : child,
-  )
-  return { ...root, children }
+  const before = nodeOf(root, path)
+  return before ? withNode(root, path, { ...before, ...change }) : root
 }

@@ -41,6 +41,15 @@ export function nodeOf(root: EditNode | undefined, path: string): EditNode | und
   return node
 }
 
+/** The graph with another node at the path of one; nodes beside it stay the same objects. */
+export function withNode(root: EditNode, path: string, by: EditNode): EditNode {
+  if (root.path === path) return by
+  const children = root.children.map((child) =>
+    path === child.path || path.startsWith(`${child.path}/`) ? withNode(child, path, by) : child,
+  )
+  return { ...root, children }
+}
+
 /** All other kinds are trees and their parts. */
 const OUTSIDE_TREES: ReadonlySet<string> = new Set(['', 'state', 'machine', 'concurrency', 'priority', 'foreach', 'behavior', 'behaviour'])
 const COMPOSITES: ReadonlySet<string> = new Set(['sequence', 'selector', 'parallel'])
@@ -92,10 +101,15 @@ export function holderOf(root: EditNode, path: string): EditNode | undefined {
   return holderOf(root, parentPath(path))
 }
 
-/** A name that no child of `parent` has yet: `grasp`, `grasp_2`, … */
-export function freeName(parent: EditNode | undefined, preferred: string): string {
-  const taken = new Set(parent?.children.map((child) => child.name) ?? [])
-  const base = preferred.replace(/[^A-Za-z0-9_-]/g, '_').replace(/^-+/, '') || 'node'
+/** A name that no child of `parent` has yet, nor one of its outcomes: `grasp`, `grasp_2`, …; as the server chooses it. */
+export function freeName(parent: EditNode | undefined, preferred: string, others: Iterable<string> = []): string {
+  const outcomes = parent && isMachine(parent.kind) ? [...parent.outcomes, ...Object.keys(parent.targets)] : []
+  const taken = new Set([...(parent?.children.map((child) => child.name) ?? []), ...outcomes, ...others])
+  const base =
+    preferred
+      .replace(/[^A-Za-z0-9_-]+/g, '_')
+      .replace(/^-+/, '')
+      .slice(0, 56) || 'node'
   if (!taken.has(base)) return base
   let number = 2
   while (taken.has(`${base}_${number}`)) number += 1

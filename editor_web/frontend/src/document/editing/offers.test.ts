@@ -82,6 +82,7 @@ it('says what each thing is and how it is now', () => {
     poses: {},
     cameras: {},
     tools: { left: { held: true, part: 'plate' } },
+    devices: {},
   }
   const items = [
     item('robot', 'robots/left', 'panda'),

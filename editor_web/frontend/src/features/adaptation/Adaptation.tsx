@@ -2,6 +2,7 @@
 import { Badge, Button, Code, Group, Select, Stack, Table, Text, TextInput, Title, VisuallyHidden } from '@mantine/core'
 import { useMutation } from '@tanstack/react-query'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { adaptation, adaptationQuery, type NameChoices } from '../../api/adaptation'
 import { problemOf, useLastAnswer } from '../../api/queryClient'
 import type { AdaptationBody, AdaptationPlan, FindingView, MappedName } from '../../api/types'
@@ -21,11 +22,7 @@ export function Adaptation({ behavior, onMade }: AdaptationProps) {
   const { value: made, problem } = useLastAnswer(adaptationQuery(behavior, names))
   return (
     <Stack gap="sm">
-      {problem && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
+      <Refusal>{problem}</Refusal>
       {!made && !problem && <Text role="status">Comparing the cells</Text>}
       {made && (
         <>
@@ -183,11 +180,7 @@ function Make({ behavior, made, names, onMade }: AdaptationProps & { readonly ma
           Behaviors inside it name things of the other cell too; copies of them are made: {made.copies.join(', ')}
         </Text>
       )}
-      {problem && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
+      <Refusal>{problem}</Refusal>
       <Group gap="xs">
         <Button type="submit" size="sm" loading={writing.isPending}>
           Create and open

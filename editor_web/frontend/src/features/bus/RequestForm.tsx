@@ -1,7 +1,7 @@
 /** The form of a request or message, made from its JSON Schema, with what was answered or refused below it. */
+import { Refusal } from '../../components/Refusal'
 import { lookup, type Dict } from '../../document/dict'
-import { Alert, Fieldset, Group, Stack, Text } from '@mantine/core'
-import { IconAlertCircle } from '@tabler/icons-react'
+import { Fieldset, Group, Stack, Text } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { ParameterField } from '../../components/ParameterField'
 import type { FormState } from './useForm'
@@ -53,11 +53,7 @@ export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: Re
           </Stack>
         </Fieldset>
         <Group gap="2xs">{buttons}</Group>
-        {refusal && (
-          <Alert color="red" variant="light" p="xs" icon={<IconAlertCircle size={16} aria-hidden />} role="alert">
-            {refusal}
-          </Alert>
-        )}
+        <Refusal>{refusal}</Refusal>
       </Stack>
     </form>
   )

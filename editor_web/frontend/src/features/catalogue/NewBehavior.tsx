@@ -3,6 +3,7 @@ import { Box, Button, Group, NativeSelect, Stack, Text, TextInput } from '@manti
 import { IconPlus } from '@tabler/icons-react'
 import { useMutation } from '@tanstack/react-query'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
 import { problemOf, useAnswer } from '../../api/queryClient'
@@ -82,11 +83,7 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
       <Text size="sm" ff="monospace" c="var(--quiet)" style={{ overflowWrap: 'anywhere' }}>
         {id}
       </Text>
-      {problem && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
+      <Refusal>{problem}</Refusal>
       <Button type="submit">Create</Button>
     </Stack>
   )
@@ -103,11 +100,7 @@ function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
       <Text component="summary" inherit style={{ cursor: 'pointer' }}>
         Deleted behaviors
       </Text>
-      {problem && (
-        <Text inherit c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
+      <Refusal>{problem}</Refusal>
       <ul className="plain-list">
         {all.map((each) => (
           <Group component="li" key={each.id} justify="space-between" wrap="nowrap" py="4xs" style={{ overflowWrap: 'anywhere' }}>

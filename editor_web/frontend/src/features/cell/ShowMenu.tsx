@@ -11,6 +11,7 @@ const WORDS: Record<LayerGroup, readonly [label: string, description: string]> =
   people: ['People', 'Their arms in a simulated cell'],
   cameras: ['Cameras', 'Their poses and depth images'],
   detections: ['Detections', 'Boxes around detections, with label and score'],
+  commanded: ['Commanded arms', 'Where real arms are told to be; without this, from 3° off on'],
   frames: ['Frames', 'Axes of the world, the tools and the parts'],
 }
 

@@ -147,7 +147,7 @@ function Line({
       )}
       {state && (
         <Group component="span" gap={4} wrap="nowrap" ml="auto">
-          {cell.kind === 'robot' && <StatusIcon status={state.look} size={13} />}
+          {(cell.kind === 'robot' || state.look !== 'idle') && <StatusIcon status={state.look} size={13} />}
           <Text span size="xs" c="dimmed" style={{ fontVariantNumeric: 'tabular-nums', whiteSpace: 'nowrap' }}>
             {state.words}
           </Text>

@@ -1,9 +1,10 @@
 /** One item of the cell: its state now, what the bus tells of it, and its lines of the document. */
 import { Alert, Anchor, Button, Code, Group, NativeSelect, ScrollArea, Stack, Table, Text, Title } from '@mantine/core'
 import { IconFocus2, IconHandFinger } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useState, type ReactNode } from 'react'
 import { useData } from '../../api/data'
 import { lookAt } from '../../api/live'
+import { useSession } from '../../api/session'
 import type { CellItem, CellItems, MessageFrame } from '../../api/types'
 import { Panel } from '../../components/Panel'
 import { StatusIcon } from '../../components/StatusIcon'
@@ -33,9 +34,11 @@ interface ItemDetailsProps {
   readonly onSelect: (address: string) => void
   /** Opens the page on which arms are jogged; undefined for a person who may look only. */
   readonly onTeach: (() => void) | undefined
+  /** What is told of a device with a driver. */
+  readonly device: ReactNode
 }
 
-export function ItemDetails({ node, cell, now, hasCellView, onSelect, onTeach }: ItemDetailsProps) {
+export function ItemDetails({ node, cell, now, hasCellView, onSelect, onTeach, device }: ItemDetailsProps) {
   const place = placeOf(node)
   return (
     <Panel title={node.item ? node.item.path : node.address}>
@@ -63,6 +66,7 @@ export function ItemDetails({ node, cell, now, hasCellView, onSelect, onTeach }:
             )}
           </Group>
           <State node={node} now={now} onSelect={onSelect} />
+          {device}
           {node.item && node.item.topics.length > 0 && <Topics key={node.item.path + location.hash} item={node.item} />}
           {node.item && <Lines item={node.item} cell={cell} />}
         </Stack>
@@ -77,7 +81,8 @@ function State({ node, now, onSelect }: Pick<ItemDetailsProps, 'node' | 'now' | 
   const state = node.kind === 'robot' || node.kind === 'tool' ? stateWords(node, now) : undefined
   const pose = poseOf(node, now.state)
   const holder = node.kind === 'part' ? holderOf(name, now.state) : undefined
-  if (!state && !pose && !holder) return null
+  const driven = useSession((s) => s.session)?.devices.find((each) => `robots/${each.device}` === node.item?.path)
+  if (!state && !pose && !holder && !driven) return null
   return (
     <Table variant="vertical" withTableBorder tabularNums aria-label={`State of ${node.name}`}>
       <Table.Tbody>
@@ -90,6 +95,12 @@ function State({ node, now, onSelect }: Pick<ItemDetailsProps, 'node' | 'now' | 
                 {state.words}
               </Group>
             </Table.Td>
+          </Table.Tr>
+        )}
+        {driven && (
+          <Table.Tr>
+            <Table.Th>Driver</Table.Th>
+            <Table.Td>{driven.simulated ? `simulated instead of ${driven.driver}` : `${driven.driver}, real`}</Table.Td>
           </Table.Tr>
         )}
         {robot?.error && (
@@ -186,7 +197,7 @@ function Lines({ item, cell }: { readonly item: CellItem; readonly cell: CellIte
           </Alert>
         )}
         {item.line > 0 ? (
-          <Code block>
+          <Code block tabIndex={0} role="region" aria-label={`Lines of ${item.name}`}>
             <Group gap="sm" align="start" wrap="nowrap">
               <Text span inherit ta="right" c="var(--quiet)" style={{ userSelect: 'none' }} aria-hidden>
                 {lines.map((_, at) => item.line + at).join('\n')}

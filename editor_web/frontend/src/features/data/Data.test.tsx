@@ -1,7 +1,9 @@
 /** The userdata of a run: every value with its writer and time, found by words, lit when it is written. */
-import { screen, within } from '@testing-library/react'
+import { screen, waitFor, within } from '@testing-library/react'
 import { expect, it, vi } from 'vitest'
-import { live, run, server, show } from '../../../testing/page'
+import { control, live, run, server, show } from '../../../testing/page'
+import { Refusal } from '../../../testing/server'
+import { useRefusal } from '../../api/refusal'
 import type { ScopeView, UserdataRecord, WatchValue } from '../../api/types'
 import { watchValueOf } from '../../api/watches'
 import { Data } from './Data'
@@ -19,9 +21,11 @@ const SCOPES: Record<string, ScopeView> = {
   'root/look': { is_open: false, since_s: 0, values: { local: value('a long note', 'root/look/note', 1) } },
 }
 
+const WHOLE = { scope: '', key: 'count', value: 1 }
+
 /** The data of a run, as the server tells of it. */
-function told(scopes = SCOPES, problem = '', watched: readonly WatchValue[] = []) {
-  live({ run: 'r1', runs: [RUN] })
+function told(scopes = SCOPES, problem = '', watched: readonly WatchValue[] = [], isPaused = false) {
+  live({ run: 'r1', runs: [RUN], control: control({ paused: isPaused }) })
   const user = show(<Data run={RUN} behavior={SHIFT} onShow={chosen} />)
   const socket = server().socket('/data')
   socket.accept()
@@ -129,4 +133,49 @@ it('says why there is nothing to show', () => {
   expect(screen.getByText('This behavior shares no data')).toBeVisible()
   socket.tell({ k: 'userdata', run: 'r1', first: true, scopes: {}, watches: [], problem: 'the run is not in memory any more' })
   expect(screen.getByText('the run is not in memory any more')).toBeVisible()
+})
+
+it('changes a value of a paused run where it stands', async () => {
+  server()
+    .on('POST /runs/r1/control/userdata', control({ paused: true }))
+    .on('GET /runs/r1/control/userdata', WHOLE)
+  const { user, socket } = told(SCOPES, '', [], true)
+  await user.click(screen.getByRole('button', { name: 'Change count' }))
+  const field = await screen.findByLabelText('New value of count')
+  expect(field).toHaveFocus()
+  await user.clear(field)
+  await user.type(field, '"many"')
+  expect(line('count')).toHaveTextContent('It was a number; this is text')
+  await user.type(field, '{Enter}')
+  expect(server().bodies('POST /runs/r1/control/userdata')).toEqual([{ scope: '', key: 'count', value: 'many' }])
+  await waitFor(() => expect(screen.queryByLabelText('New value of count')).toBeNull())
+  const values = { ...SCOPES['']?.values, count: { value: 'many', by: '', at_s: 2, writes: 2 } }
+  socket.tell({ k: 'userdata', run: 'r1', first: false, scopes: { '': { is_open: true, since_s: 0, values } }, watches: [], problem: '' })
+  expect(line('count')).toHaveTextContent('countmanyset by a person at 2.00 s')
+})
+
+it('says what is wrong with a value, and keeps what was typed', async () => {
+  const words = { message: 'there is no such key', hint: 'look again' }
+  server().on('POST /runs/r1/control/userdata', new Refusal(422, words)).on('GET /runs/r1/control/userdata', WHOLE)
+  const { user } = told(SCOPES, '', [], true)
+  await user.click(screen.getByRole('button', { name: 'Change count' }))
+  const field = await screen.findByLabelText('New value of count')
+  await user.clear(field)
+  await user.type(field, 'many{Enter}')
+  expect(line('count')).toHaveTextContent('This is not JSON')
+  expect(screen.getByRole('button', { name: 'Set value' })).toBeDisabled()
+  await user.clear(field)
+  await user.type(field, '3{Enter}')
+  expect(await screen.findByText('there is no such key (look again)')).toBeVisible()
+  expect(field).toHaveValue('3')
+  await user.type(field, '{Escape}')
+  expect(line('count')).toHaveTextContent('count1')
+})
+
+it('changes nothing while the run goes on, and nothing of what is over', async () => {
+  const { user } = told()
+  await user.click(screen.getByRole('button', { name: 'Change count' }))
+  expect(useRefusal.getState().refusal).toEqual({ what: 'Change count', message: 'pause the run first', hint: '' })
+  expect(screen.queryByLabelText('New value of count')).toBeNull()
+  expect(screen.queryByRole('button', { name: 'Change local' })).toBeNull()
 })

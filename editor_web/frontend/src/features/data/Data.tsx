@@ -1,18 +1,24 @@
 /** The userdata of the shown run: every value of every container, who wrote it last and when. */
 import { ActionIcon, Anchor, Badge, Box, CloseButton, Group, List, Text, TextInput, Title } from '@mantine/core'
-import { IconDatabase, IconEye, IconSearch } from '@tabler/icons-react'
+import { IconDatabase, IconEye, IconPencil, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
+import { api } from '../../api/client'
 import { useData } from '../../api/data'
+import { useLive } from '../../api/live'
 import { usePastValues } from '../../api/pastValues'
+import { send, showRefusal } from '../../api/refusal'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { useIsVisible } from '../../components/useIsVisible'
 import { ValueTree } from '../../components/ValueTree'
+import { disabledReason } from '../../document/commands'
+import { isActive } from '../../document/runState'
 import { containerOf, namesIn, shownScopes, withChanges, type Scopes } from '../../document/userdata'
 import { inShort, isShort } from '../../document/values'
 import type { BehaviorView, UserdataRecord, WatchValue } from '../../api/types'
 import { useWatches, watchValueOf } from '../../api/watches'
 import classes from './data.module.css'
+import { ValueEditor } from './ValueEditor'
 import { Watches } from './Watches'
 
 const NO_VALUES: readonly WatchValue[] = []
@@ -48,6 +54,7 @@ export function Data({ run, behavior, node, onShow }: DataProps) {
       problem: frame.problem,
     }))
   })
+  const changing = useChanging(run?.id, past !== undefined)
   const current = past ?? (latest?.run === run?.id ? latest : undefined)
   const names = useMemo(() => namesIn(current?.scopes ?? {}, behavior.parameters), [current, behavior.parameters])
   const scopes = useMemo(() => shownScopes(current?.scopes ?? {}, search), [current, search])
@@ -110,6 +117,9 @@ export function Data({ run, behavior, node, onShow }: DataProps) {
                   name={line.key}
                   line={line}
                   onShow={onShow}
+                  changing={scope.isOpen ? changing : undefined}
+                  load={async () => (await api.userdata(run.id, scope.path, line.key)).value}
+                  onSave={(value) => api.setUserdata(run.id, scope.path, line.key, value)}
                   onWatch={() => watchValueOf(behavior.id, { expression: line.key, ...(scope.path && { path: containerOf(scope.path) }) })}
                 />
               ))}
@@ -132,6 +142,20 @@ export function Data({ run, behavior, node, onShow }: DataProps) {
   )
 }
 
+/** Whether values can be changed, and why not now; undefined where there is nothing to change: the past, or a run that has ended. */
+interface Changing {
+  readonly obstacle: string | undefined
+}
+
+function useChanging(id: string | undefined, isPast: boolean): Changing | undefined {
+  const run = useLive((s) => s.runs.find((each) => each.id === id))
+  const role = useLive((s) => s.role)
+  const isConnected = useLive((s) => s.connection === 'live')
+  const control = useLive((s) => s.control)
+  if (isPast || !isActive(run)) return undefined
+  return { obstacle: disabledReason('userdata', { role, isConnected, run, control, node: undefined, nodeStatus: 'idle' }) }
+}
+
 function NoData({ title, children }: { title: string; children: ReactNode }) {
   return (
     <Empty icon={<IconDatabase size={26} stroke={1.4} aria-hidden />} title={title}>
@@ -145,23 +169,54 @@ interface LineProps {
   readonly line: UserdataRecord
   readonly onShow: (path: string) => void
   readonly onWatch: () => void
+  readonly changing: Changing | undefined
+  /** The whole value; what the line shows of a large one is truncated. */
+  readonly load: () => Promise<unknown>
+  readonly onSave: (value: unknown) => Promise<unknown>
 }
 
 /** Drawn again when it is written again, and lit for a moment then. */
 const Line = memo(
-  function Line({ name, line, onShow, onWatch }: LineProps) {
+  function Line({ name, line, onShow, onWatch, changing, load, onSave }: LineProps) {
+    const [edited, setEdited] = useState<{ readonly value: unknown }>()
+    const obstacle = changing?.obstacle
+    const whole = changing && obstacle === undefined ? edited : undefined
+
+    async function edit(): Promise<void> {
+      if (obstacle !== undefined) showRefusal(`Change ${name}`, obstacle)
+      else setEdited(await send(`Change ${name}`, async () => ({ value: await load() })))
+    }
+
     return (
       <li className={classes.line}>
         <Group gap={4} wrap="nowrap" align="start" justify="space-between">
           <Text span inherit ff="monospace" fw={600}>
             {name}
           </Text>
-          <ActionIcon variant="subtle" color="gray" size={18} aria-label={`Watch ${name}`} title="Watch it" onClick={onWatch}>
-            <IconEye size={13} aria-hidden />
-          </ActionIcon>
+          <Group gap={2} wrap="nowrap">
+            {changing && (
+              <ActionIcon
+                variant="subtle"
+                color="gray"
+                size={18}
+                aria-label={`Change ${name}`}
+                title={obstacle ? `Not possible: ${obstacle}` : 'Change it'}
+                aria-disabled={obstacle !== undefined}
+                {...(obstacle !== undefined && { 'data-disabled': true })}
+                onClick={() => void edit()}
+              >
+                <IconPencil size={13} aria-hidden />
+              </ActionIcon>
+            )}
+            <ActionIcon variant="subtle" color="gray" size={18} aria-label={`Watch ${name}`} title="Watch it" onClick={onWatch}>
+              <IconEye size={13} aria-hidden />
+            </ActionIcon>
+          </Group>
         </Group>
         <span className={classes.value} key={line.writes} data-written={line.writes > 0 || undefined}>
-          {isShort(line.value) ? (
+          {whole ? (
+            <ValueEditor name={name} value={whole.value} onSave={onSave} onClose={() => setEdited(undefined)} />
+          ) : isShort(line.value) ? (
             <Text span inherit ff="monospace">
               {inShort(line.value)}
             </Text>
@@ -182,12 +237,17 @@ const Line = memo(
             </>
           ) : (
             <Text span inherit c="dimmed">
-              from the start
+              {line.writes > 0 ? `set by a person at ${line.at_s.toFixed(2)} s` : 'from the start'}
             </Text>
           )}
         </span>
       </li>
     )
   },
-  (before, after) => before.line.at_s === after.line.at_s && before.line.writes === after.line.writes && before.line.by === after.line.by,
+  (before, after) =>
+    before.line.at_s === after.line.at_s &&
+    before.line.writes === after.line.writes &&
+    before.line.by === after.line.by &&
+    (before.changing === undefined) === (after.changing === undefined) &&
+    before.changing?.obstacle === after.changing?.obstacle,
 )

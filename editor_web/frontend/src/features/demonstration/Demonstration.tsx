@@ -2,6 +2,7 @@
 import { Alert, Box, Button, Code, Divider, Flex, Group, List, NativeSelect, SimpleGrid, Text, TextInput, Title } from '@mantine/core'
 import { IconAlertTriangle } from '@tabler/icons-react'
 import { useEffect, useId, useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { propose } from '../../api/demonstration'
 import { documents } from '../../api/documents'
@@ -118,11 +119,7 @@ function Preview({ proposed }: { proposed: Proposed }) {
       <Title order={3} size="sm" mb="xs">
         Resulting steps
       </Title>
-      {problem && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {problem}
-        </Text>
-      )}
+      <Refusal>{problem}</Refusal>
       {!proposal && !problem && (
         <Text size="sm" c="dimmed">
           Shown here as soon as there is a step.
@@ -192,11 +189,7 @@ function MakeForm({ canMake, refusal, onMake }: MakeFormProps) {
           onChange={(event) => setName(event.currentTarget.value)}
         />
         <Code>{id}</Code>
-        {problem && (
-          <Text span size="sm" c="var(--failed)" role="alert">
-            {problem}
-          </Text>
-        )}
+        <Refusal>{problem}</Refusal>
         <Button type="submit" ml="auto">
           Create and open
         </Button>

@@ -35,6 +35,7 @@ import { useCanvasDrop } from './useCanvasDrop'
 import { useCanvasEdges } from './useCanvasEdges'
 import { useCanvasNodes } from './useCanvasNodes'
 import { useCanvasViewport, useLevelOfDetail } from './useCanvasViewport'
+import { useFrameDrag } from './useFrameDrag'
 import { useShownNode } from './useShownNode'
 
 const NODE_TYPES = {
@@ -47,6 +48,28 @@ const NODE_TYPES = {
 const NO_EDGES: CanvasEdge[] = []
 const EDGE_TYPES = { transition: TransitionLine, branch: BranchLine }
 const SELECT_KEYS = ['Shift', 'Meta', 'Control']
+
+// Elements of their own: a node that is dragged draws the canvas with each frame, and these stay as they are.
+const DOTS = <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+const MAP = (
+  <MiniMap
+    pannable
+    zoomable
+    style={{ border: '1px solid var(--line)' }}
+    ariaLabel="Overview of the canvas"
+    nodeColor={({ type }) => (type === 'frame' ? 'none' : 'var(--line-strong)')}
+    nodeStrokeColor={({ type }) => (type === 'frame' ? 'var(--line-strong)' : 'none')}
+    nodeStrokeWidth={6}
+  />
+)
+const OVERLAYS = (
+  <>
+    <FlowOverlay />
+    <NoteOverlay />
+    <SelectionBar />
+    <NodeMenu />
+  </>
+)
 
 export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: boolean }) {
   const { ref, width, height } = useElementSize()
@@ -77,12 +100,13 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const isStale = useEditor((s) => s.history.steps[s.history.at]?.draft.isStale ?? false)
   const element = useRef<HTMLDivElement>(null)
   const drawn = useCanvasNodes(arranged)
-  const { computed, nodes, given, onNodesChange, putBack } = drawn
+  const { computed, given, onNodesChange, putBack } = drawn
   const edges = useCanvasEdges(arranged)
   const canvas = { arranged, computed, getInternalNode }
   const { hasMany, isFar } = useLevelOfDetail(arranged.scope.path, computed.length)
   const { isInPlace, onMoveStart } = useCanvasViewport(arranged, pane)
-  const { onNodeDragStop, onSelectionDragStop } = useCanvasDrag(canvas, putBack)
+  const frameDrag = useFrameDrag(element, drawn.nodes, !hasMany)
+  const drag = useCanvasDrag(canvas, putBack, frameDrag)
   const { isConnecting, onConnectStart, onConnectEnd } = useCanvasConnect(canvas)
   const { onDragOver, onDrop, onPaneContextMenu } = useCanvasDrop(canvas)
   useShownNode(element, arranged, drawn)
@@ -96,7 +120,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       data-in-place={isInPlace || undefined}
       data-connecting={isConnecting || undefined}
       data-stale={isStale || undefined}
-      nodes={nodes}
+      nodes={frameDrag.nodes}
       edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
       onlyRenderVisibleElements={hasMany && !isFar}
       nodeTypes={NODE_TYPES}
@@ -108,8 +132,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       onNodeContextMenu={onNodeMenu}
       onSelectionContextMenu={onSelectionMenu}
       onPaneClick={onPaneClick}
-      onNodeDragStop={onNodeDragStop}
-      onSelectionDragStop={onSelectionDragStop}
+      {...drag}
       onMoveStart={onMoveStart}
       onConnectStart={onConnectStart}
       onConnect={onConnect}
@@ -136,23 +159,10 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       maxZoom={2.5}
       aria-label="Canvas of the behavior"
     >
-      <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
-      {hasMap && (
-        <MiniMap
-          pannable
-          zoomable
-          style={{ border: '1px solid var(--line)' }}
-          ariaLabel="Overview of the canvas"
-          nodeColor={({ type }) => (type === 'frame' ? 'none' : 'var(--line-strong)')}
-          nodeStrokeColor={({ type }) => (type === 'frame' ? 'var(--line-strong)' : 'none')}
-          nodeStrokeWidth={6}
-        />
-      )}
+      {DOTS}
+      {hasMap && MAP}
       {isFar && <LowDetailEdges nodes={computed} edges={edges} />}
-      <FlowOverlay />
-      <NoteOverlay />
-      <SelectionBar />
-      <NodeMenu />
+      {OVERLAYS}
       {arranged.scope.children.length === 0 && <EmptyCanvas />}
     </ReactFlow>
   )

@@ -19,11 +19,11 @@ import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
 import { setPageActions } from './pageActions'
-import { showPresence } from '../../api/presence'
 import { ConflictDialog } from './ConflictDialog'
 import { ConflictPanel } from './ConflictPanel'
 import { forgetDataFlow, useDataFlow } from './dataFlow'
 import { DataFlowPanel } from './DataFlowPanel'
+import { EditorArea } from './EditorArea'
 import { EditorHead } from './EditorHead'
 import { FileDialogs } from './FileDialogs'
 import { useFileDialog } from './fileDialogs'
@@ -33,8 +33,10 @@ import { LibraryPanel } from './LibraryPanel'
 import { DoneNote, NoticeLine } from './NoticeLine'
 import { trackViewportMotion } from './viewportMotion'
 import { Palettes } from './Palettes'
+import { ReplaceDialog } from './ReplaceDialog'
+import { SourceDialog } from './SourceDialog'
 import { refreshReferences } from './references'
-import { lookAtDisk, openDocument, save } from './session'
+import { lookAtDisk, openDocument, save, takeStates } from './session'
 import { CellViewContext } from './ShowEntry'
 import { draftOf, editor, isDirty, showEditorRefusal, setEditor, useEditor } from './store'
 import { searchCommands } from './searchCommands'
@@ -77,6 +79,10 @@ export function EditorPage(props: EditorPageProps) {
     if (onDisk && onDisk !== editor().base.hash) void lookAtDisk()
   }, [onDisk])
   useEffect(() => refreshReferences(written), [written])
+  const statesRevision = useLive((s) => s.statesRevision)
+  useEffect(() => {
+    if (statesRevision > 0 && editor().phase === 'ready') void takeStates()
+  }, [statesRevision])
   useUnsavedGuard()
   if (phase === 'failed') return <Empty title="This behavior cannot be edited">{problem}</Empty>
   if (phase === 'loading') return <Loader size="sm" m="auto" role="status" aria-label="Loading" />
@@ -94,7 +100,7 @@ function useUnsavedGuard(): void {
   useEffect(() => {
     const warn = (event: BeforeUnloadEvent) => {
       storeDraftNow()
-      if (isDirty(editor())) event.preventDefault()
+      if (isDirty(editor()) || editor().unwritten.length > 0) event.preventDefault()
     }
     const look = () => document.visibilityState === 'visible' && !isGone(useLive.getState(), editor().id) && void lookAtDisk()
     addEventListener('beforeunload', warn)
@@ -111,10 +117,7 @@ function useUnsavedGuard(): void {
 
 function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, preview }: EditorPageProps) {
   useEffect(() => offerCommands(searchCommands), [])
-  const selected = useEditor((s) => s.selection.at(-1) ?? '')
-  useEffect(() => showPresence({ node: selected }), [selected])
   const isTextShown = useEditor((s) => s.isTextShown)
-  const isBusy = useEditor((s) => s.isBusy)
   const hasVersions = useFileDialog((s) => s.open === 'versions')
   const hasFlow = useDataFlow((s) => s.isShown)
   const [hasMap, setMap] = useState(false)
@@ -183,7 +186,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     </Loading>
   )
   return (
-    <Flex direction="column" pos="relative" flex={1} mih={0} ref={element} data-editor aria-busy={isBusy}>
+    <EditorArea area={element}>
       <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
       <NoticePlace>
         <NoticeLine />
@@ -233,9 +236,11 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
       )}
       {isNarrow && preview}
       <Palettes />
+      <ReplaceDialog />
+      <SourceDialog />
       <ConflictDialog />
       <FileDialogs onGone={onGone} />
       <WhileLoading value={null}>{hasVersions && <VersionsDialog />}</WhileLoading>
-    </Flex>
+    </EditorArea>
   )
 }

@@ -1,6 +1,7 @@
 /** Giving the file of a behavior another name, copying it, deleting it; who refers to it is shown before. */
 import { Box, Button, Checkbox, Code, Group, Stack, Text, TextInput } from '@mantine/core'
 import { useEffect, useState, type ReactNode } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { useAnswer } from '../../api/queryClient'
 import { relationQueries, relations } from '../../api/relations'
@@ -130,11 +131,7 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
           </>
         )}
         {dirty && <FormWords>Unsaved changes are saved first.</FormWords>}
-        {(refusal ?? (to === id ? undefined : problem)) && (
-          <Text size="sm" c="var(--failed)" role="alert">
-            {refusal ?? problem}
-          </Text>
-        )}
+        <Refusal>{refusal ?? (to === id ? undefined : problem)}</Refusal>
         <Button type="submit" aria-disabled={problem !== undefined}>
           {isRename ? 'Rename' : 'Make the copy'}
         </Button>
@@ -170,11 +167,7 @@ function DeleteForm({ id, onGone }: { id: string; onGone: () => void }) {
           Unsaved changes are lost.
         </Text>
       )}
-      {refusal && (
-        <Text size="sm" c="var(--failed)" role="alert">
-          {refusal}
-        </Text>
-      )}
+      <Refusal>{refusal}</Refusal>
       <Group gap="xs">
         <Button variant="default" c="var(--failed)" bd="1px solid var(--failed)" onClick={() => void go()}>
           Delete {partsOfId(id).name}

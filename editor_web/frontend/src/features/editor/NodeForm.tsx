@@ -1,6 +1,6 @@
 /** The form of one node: what it runs and with what, where its outcomes lead, and what happens when it takes long or fails. */
 import { Box, NativeSelect } from '@mantine/core'
-import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
+import { IconCursorText, IconExternalLink, IconReplace } from '@tabler/icons-react'
 import { KindIcon } from '../../components/KindIcon'
 import { isForeign, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -24,8 +24,10 @@ import { ParameterFields } from './ParameterFields'
 import { RulesForm } from './RulesForm'
 import { Section } from './Section'
 import { SettingsForm } from './SettingsForm'
+import { SourceLine } from './SourceLine'
 import { TemplateInput } from './TemplateInput'
 import { Tool } from './Tool'
+import { openReplacePalette, replaceType } from './typeReplacement'
 import { rootOf, setEditor, useEditor } from './store'
 
 export interface NodeFormProps {
@@ -53,16 +55,26 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
         icon={<KindIcon icon={node.icon} size={18} />}
         title={node.path === ROOT ? 'The whole behavior' : node.name}
         tools={
-          node.path !== ROOT && (
+          <>
             <Tool
               isSmall
-              label={`Rename ${node.name}`}
-              title="Rename (F2)"
-              onPress={() => setEditor({ renaming: node.path, selection: [node.path] })}
+              label={`Replace ${node.name}`}
+              title="Replace by another type (Shift+R)"
+              onPress={() => openReplacePalette([node.path])}
             >
-              <IconCursorText size={15} aria-hidden />
+              <IconReplace size={15} aria-hidden />
             </Tool>
-          )
+            {node.path !== ROOT && (
+              <Tool
+                isSmall
+                label={`Rename ${node.name}`}
+                title="Rename (F2)"
+                onPress={() => setEditor({ renaming: node.path, selection: [node.path] })}
+              >
+                <IconCursorText size={15} aria-hidden />
+              </Tool>
+            )}
+          </>
         }
       >
         {[kindLabel(node.kind), isScope && node.path !== ROOT ? 'fills the canvas' : '', others > 0 ? `and ${others} more selected` : '']
@@ -77,13 +89,14 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
             isMono
             value={node.title}
             options={node.kind === 'state' ? (catalogue?.states.map((each) => each.name) ?? []) : []}
-            onCommit={(typed) => typed && set(node.kind, typed, 'Kind')}
+            onCommit={(typed) => typed && void replaceType([node.path], { kind: node.kind, runs: typed, name: '' })}
           />
           {state && (
             <FormWords>
               <Words text={flowing(state.doc)} />
             </FormWords>
           )}
+          {state && <SourceLine state={state.name} />}
           {node.document && (
             <FormWords>
               {behavior?.description} <OpenOther id={node.document} from={node.path} />

@@ -11,12 +11,12 @@ import { chosenOf, editor, rootOf, setEditor, useEditor } from './store'
 const ONE = [
   ['enter', 'open', 'connect', 'initial'],
   ['run-from', 'run-to'],
-  ['disable', 'rename', 'note'],
+  ['disable', 'rename', 'replace', 'note'],
   ['duplicate', 'copy', 'cut', 'remove'],
-  ['alike', 'usages'],
+  ['alike', 'usages', 'source'],
 ] as const
 const SEVERAL = [
-  ['disable'],
+  ['disable', 'replace'],
   ['align-left', 'align-right', 'align-top', 'align-bottom', 'align-row', 'align-column', 'distribute-across', 'distribute-down'],
   ['group', 'group-concurrency'],
   ['duplicate', 'copy', 'cut', 'remove'],
@@ -70,6 +70,7 @@ function shownCommand(id: string): Command | undefined {
   const node = chosenOf(editor())
   if (!node || (node.path === ROOT && ['disable', 'rename', 'remove', 'run-from', 'run-to'].includes(id))) return undefined
   if ((id === 'enter' || id === 'open') && !isFrame(node) && node.document === null) return undefined
+  if (id === 'source' && node.state === null) return undefined
   if ((id === 'alike' && !node.title) || (id === 'usages' && !usedBy(node))) return undefined
   return COMMANDS.find((command) => command.id === id)
 }
@@ -80,9 +81,11 @@ const WORDS: Readonly<Record<string, string>> = {
   open: 'Open or close in place',
   connect: 'Connect an outcome…',
   initial: 'Start with it',
+  replace: 'Replace by…',
   note: 'Note',
   alike: 'Select all that run the same',
   usages: 'Find usages of what it runs',
+  source: 'Show its Python source',
 }
 
 /** What it does to what is selected. */

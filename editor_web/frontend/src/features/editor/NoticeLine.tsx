@@ -3,6 +3,7 @@ import { Box, CloseButton, Flex, Paper } from '@mantine/core'
 import { IconAlertTriangle, IconCheck, IconHistory } from '@tabler/icons-react'
 import { useEffect, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
+import { Refusal } from '../../components/Refusal'
 import { isGone } from '../../document/live'
 import { LinkButton } from './FormParts'
 import classes from './frame.module.css'
@@ -41,13 +42,11 @@ export function NoticeLine() {
         </Note>
       )}
       {notice?.tone === 'refused' && (
-        <Note tone="refused" icon={<IconAlertTriangle size={16} aria-hidden />}>
-          <span>
-            <strong>{notice.what}</strong>: {notice.message}
-            {notice.hint && ` ${notice.hint}`}
-          </span>
-          <CloseButton size="sm" aria-label="Close the refusal" onClick={() => setEditor({ notice: undefined })} />
-        </Note>
+        <div data-notice="refused">
+          <Refusal isWide title={`${notice.what}:`} hint={notice.hint} onClose={() => setEditor({ notice: undefined })}>
+            {notice.message}
+          </Refusal>
+        </div>
       )}
     </>
   )
@@ -74,7 +73,7 @@ export function DoneNote() {
   )
 }
 
-const GROUNDS = { plain: 'var(--accent-soft)', warning: 'var(--stopped-soft)', refused: 'var(--failed-soft)' }
+const GROUNDS = { plain: 'var(--accent-soft)', warning: 'var(--stopped-soft)' }
 
 interface NoteProps {
   readonly tone: keyof typeof GROUNDS

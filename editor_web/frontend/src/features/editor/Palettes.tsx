@@ -6,6 +6,7 @@ import { nameOfPath, parentPath } from '../../document/path'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemsOf } from './additions'
 import { openPortPalette } from './paletteRequests'
+import { replaceType } from './typeReplacement'
 import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
 import { KindIcon } from '../../components/KindIcon'
 import { declaredOutcomes } from './useArrangement'
@@ -24,6 +25,8 @@ export function Palettes() {
       return <AddPalette request={palette} onClose={close} />
     case 'connect':
       return <ConnectPalette path={palette.path} onClose={close} />
+    case 'replace':
+      return <ReplacePalette paths={palette.paths} onClose={close} />
   }
 }
 
@@ -139,4 +142,31 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     run: () => openPortPalette(path, transition.outcome),
   }))
   return <ChoiceBox label={`Connect ${node?.name ?? ''}`} placeholder="Which outcome …" choices={choices} onClose={onClose} />
+}
+
+function ReplacePalette({ paths, onClose }: { paths: readonly string[]; onClose: () => void }) {
+  const catalogue = useEditor((s) => s.catalogue)
+  const id = useEditor((s) => s.id)
+  const root = useEditor(rootOf)
+  const what = `Replace ${paths.length === 1 ? nameOfPath(paths[0] ?? '') : `${paths.length} nodes`} by`
+  const choices = useMemo(() => {
+    const nodes = paths.flatMap((path) => nodeOf(root, path) ?? [])
+    const parents = paths.map((path) => nodeOf(root, parentPath(path)))
+    const items = catalogue ? itemsOf(catalogue, id) : []
+    return items
+      .filter((item) => parents.every((parent) => (parent ? fits(item, parent) : !item.onlyInTree)))
+      .filter(
+        ({ addition }) =>
+          !nodes.every((node) => node.kind === addition.kind && (addition.runs === undefined || node.title === addition.runs)),
+      )
+      .map((item): Choice => ({
+        id: item.id,
+        title: item.title,
+        group: item.group,
+        detail: item.summary,
+        icon: <KindIcon icon={item.icon} size={15} />,
+        run: () => void replaceType(paths, item.addition),
+      }))
+  }, [catalogue, id, root, paths])
+  return <ChoiceBox label={what} placeholder={`${what} …`} choices={choices} onClose={onClose} />
 }

@@ -10,6 +10,7 @@ import { FormHead, FormLine, FormWords } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
+import { openReplacePalette } from './typeReplacement'
 
 export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
   const catalogue = useEditor((s) => s.catalogue)
@@ -39,6 +40,11 @@ export function SelectionForm({ nodes }: { nodes: readonly EditNode[] }) {
             </FormLine>
           )
         })}
+      </Section>
+      <Section title="Type">
+        <Button size="xs" variant="default" onClick={() => openReplacePalette(nodes.map((node) => node.path))}>
+          Replace {count} by…
+        </Button>
       </Section>
       <Section title="Disable">
         <Button size="xs" variant="default" onClick={() => void toggleDisabled(nodes.map((node) => node.path))}>

@@ -5,7 +5,7 @@ import { useEffect, useId, useRef, useState, type KeyboardEvent } from 'react'
 import { completed, openingAt, type Name } from '../../document/editing/completion'
 import type { Offer } from '../../document/editing/offers'
 import classes from './form.module.css'
-import { useNames } from './useNames'
+import { namesNow } from './useNames'
 
 export interface TemplateInputProps {
   readonly label: string
@@ -36,7 +36,6 @@ export function TemplateInput(props: TemplateInputProps) {
   const [text, setText] = useState(value)
   const [offer, setOffer] = useState<Opened>()
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null)
-  const names = useNames()
   const id = useId()
   useEffect(() => setText(value), [value])
   // What the mouse is over is not taken by a key.
@@ -47,7 +46,7 @@ export function TemplateInput(props: TemplateInputProps) {
 
   function look(next: string, cursor: number): void {
     setHovered(-1)
-    const opening = openingAt(next, cursor, names)
+    const opening = openingAt(next, cursor, namesNow())
     if (opening) {
       setOffer({
         items: opening.names
@@ -73,7 +72,7 @@ export function TemplateInput(props: TemplateInputProps) {
     const item = offer?.items[index]
     const input = field.current
     if (!item || !input) return
-    const opening = item.name ? openingAt(text, input.selectionStart ?? text.length, names) : undefined
+    const opening = item.name ? openingAt(text, input.selectionStart ?? text.length, namesNow()) : undefined
     if (item.name && opening) {
       const done = completed(text, input.selectionStart ?? text.length, opening, item.name.name)
       setText(done.text)

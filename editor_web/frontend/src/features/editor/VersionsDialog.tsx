@@ -2,6 +2,7 @@
 import { Button, Group, Input, Loader, NativeSelect, Space, Stack, Text, UnstyledButton } from '@mantine/core'
 import { queryOptions, skipToken } from '@tanstack/react-query'
 import { useId, useMemo, useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { useLive } from '../../api/live'
 import { useAnswer, type Answer } from '../../api/queryClient'
 import { queryKeys } from '../../api/queryKeys'
@@ -57,11 +58,7 @@ function Versions() {
   }
 
   if (problem) {
-    return (
-      <Text size="sm" c="var(--failed)" role="alert">
-        {problem}
-      </Text>
-    )
+    return <Refusal>{problem}</Refusal>
   }
   if (!versions) return <Loader size="sm" m="auto" role="status" aria-label="Loading" />
   return (

@@ -7,7 +7,7 @@ import { corner, setField, type AddNode, type Corner, type Edit, type GroupKind 
 import { allNodes, freeName, holderOf, isComposite, isMachine, isTreePart, nodeOf, ROOT, type EditNode } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
 import { nameOfPath, parentPath } from '../../document/path'
-import { perform, performOn } from './apply'
+import { inTurn, perform, performOn } from './apply'
 import { canvasBoxes } from './canvasPositions'
 import { fromClipboard, toClipboard } from './clipboard'
 import { place, seenPositions } from './placing'
@@ -88,10 +88,27 @@ export async function remove(): Promise<void> {
   const paths = own(outermost(), 'Delete')
   if (paths.length === 0) return
   const next = parentPath(paths[0] ?? '')
-  await perform(paths.length === 1 ? `Delete ${nameOfPath(paths[0] ?? '')}` : `Delete ${paths.length} nodes`, [
-    { edit: 'remove_nodes', paths },
-  ])
-  if (next && next !== editor().scope && nodeOf(rootOf(editor()), next)) choose([next])
+  const label = paths.length === 1 ? `Delete ${nameOfPath(paths[0] ?? '')}` : `Delete ${paths.length} nodes`
+  const done = perform(label, [{ edit: 'remove_nodes', paths }])
+  const goOn = () => {
+    if (next && next !== editor().scope && nodeOf(rootOf(editor()), next)) choose([next])
+  }
+  const isShown = !nodeOf(rootOf(editor()), paths[0] ?? '')
+  if (isShown) goOn()
+  const takeBack = whereUntouched()
+  const answer = await done
+  if (!answer) takeBack(paths)
+  else if (!isShown) goOn()
+}
+
+/** Chooses again what an edit that the server refuses was made of, unless something else was chosen or opened meanwhile. */
+function whereUntouched(): (paths: readonly string[]) => void {
+  const { id, selection } = editor()
+  return (paths) => {
+    const now = editor()
+    if (now.id !== id || !now.selection.every((path) => selection.includes(path))) return
+    choose(paths.filter((path) => nodeOf(rootOf(now), path)))
+  }
 }
 
 function disconnection(path: string, outcome: string): Edit {
@@ -108,19 +125,35 @@ export async function rename(path: string, name: string): Promise<void> {
   if (editor().renaming !== path) return
   setEditor({ renaming: undefined })
   if (name === nameOfPath(path)) return
-  const answer = await perform(`Rename ${nameOfPath(path)} to ${name}`, [{ edit: 'rename_node', path, name }])
   const made = `${parentPath(path)}/${name}`
+  const done = perform(`Rename ${nameOfPath(path)} to ${name}`, [{ edit: 'rename_node', path, name }])
+  const isShown = nodeOf(rootOf(editor()), made) !== undefined
+  if (isShown) choose([made])
+  const takeBack = whereUntouched()
+  const answer = await done
   if (answer && nodeOf(rootOf(editor()), made)) {
-    choose([made])
+    if (!isShown) choose([made])
     focusNode(made)
-  }
+  } else if (!answer && isShown) takeBack([path])
 }
 
 export async function duplicate(): Promise<void> {
   const paths = own(outermost(), 'Duplicate')
   if (paths.length === 0) return
-  const answer = await perform('Duplicate', [{ edit: 'duplicate', paths }])
-  if (answer) chooseChanged(answer.changed, paths)
+  const before = rootOf(editor())
+  const done = perform('Duplicate', [{ edit: 'duplicate', paths }])
+  // What is pressed next is meant for the copies that are seen.
+  const shown = before ? siblingsOf(paths).filter((path) => !nodeOf(before, path)) : []
+  if (shown.length > 0) choose(shown)
+  const takeBack = whereUntouched()
+  const answer = await done
+  if (!answer) takeBack(paths)
+  else if (shown.length === 0) chooseChanged(answer.changed, paths)
+}
+
+function siblingsOf(paths: readonly string[]): readonly string[] {
+  const parents = new Set(paths.map(parentPath))
+  return [...parents].flatMap((parent) => nodeOf(rootOf(editor()), parent)?.children.map((child) => child.path) ?? [])
 }
 
 function chooseChanged(changed: readonly string[], before: readonly string[]): void {
@@ -134,7 +167,8 @@ export async function copy(cut = false): Promise<void> {
   if (paths.length === 0) return
   const { id } = editor()
   try {
-    const { yaml } = await documents.copy(id, draftOf(editor()).text, paths)
+    // After what is shown already: a copy that is not written yet is in no text.
+    const { yaml } = await inTurn(() => documents.copy(id, draftOf(editor()).text, paths))
     await toClipboard(yaml)
     showEditorNotice(paths.length === 1 ? `Copied ${nameOfPath(paths[0] ?? '')}` : `Copied ${paths.length} nodes`)
     if (cut) await remove()

@@ -4,13 +4,18 @@ import { documents } from '../../api/documents'
 import type { EditAnswer } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { newHistory, presentOf } from '../../document/editing/history'
-import { node } from '../../document/editing/testNodes'
+import { machineNode, node } from '../../document/editing/testNodes'
 import { lookForFindings, perform, redo, typed, undo } from './apply'
+import { copy, duplicate, rename } from './actions'
 import type { Command } from './command'
 import { disabledReason } from './commands'
+import { storedDraft } from './draftStorage'
+import { openDocument } from './session'
 import { blank, draftOf, editor, rootOf, useEditor } from './store'
 
-vi.mock('../../api/documents', () => ({ documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn() } }))
+vi.mock('../../api/documents', () => ({
+  documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn(), open: vi.fn(), catalogue: vi.fn(), copy: vi.fn() },
+}))
 vi.mock('../../api/client', async (original) => ({
   ...(await original<object>()),
   api: { session: () => Promise.resolve({ role: 'operator' }) },
@@ -151,4 +156,152 @@ test('where the difference is of another graph, the whole one is asked for', asy
   await perform('Duplicate', EDIT)
   expect(vi.mocked(documents.edit).mock.lastCall?.[3]).toEqual({ check: true, graph: null })
   expect(text()).toBe('a+')
+})
+
+const RENAME: readonly Edit[] = [{ edit: 'rename_node', path: 'root/a', name: 'b' }]
+
+/** A machine with one state, and nothing on its way. */
+function withOneState(): void {
+  const root = machineNode('root', 'a', [node('root/a', ['done'])], [])
+  useEditor.setState({ history: newHistory({ ...draftOf(editor()), root }) })
+}
+
+test('a new name is shown before the server has written it, and the node stays the selected one', async () => {
+  withOneState()
+  const server = slowServer()
+  useEditor.setState({ renaming: 'root/a', selection: ['root/a'] })
+  const done = rename('root/a', 'b')
+  expect(rootOf(editor())?.children.map((child) => child.path)).toEqual(['root/b'])
+  expect(editor().selection).toEqual(['root/b'])
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  server.release()
+  await done
+  expect(editor().unwritten).toEqual([])
+})
+
+test('what the server refuses is as before, and so is what was selected', async () => {
+  withOneState()
+  const refused = { message: 'no', hint: '', index: 0, losses: [] }
+  vi.mocked(documents.edit).mockResolvedValue({ ...answer('a'), refused })
+  useEditor.setState({ renaming: 'root/a', selection: ['root/a'] })
+  await rename('root/a', 'b')
+  expect(rootOf(editor())?.children.map((child) => child.path)).toEqual(['root/a'])
+  expect(editor().selection).toEqual(['root/a'])
+  expect(editor().notice).toMatchObject({ message: 'no', tone: 'refused' })
+})
+
+test('edits that wait for each other are all shown', async () => {
+  withOneState()
+  const server = slowServer()
+  const both = [perform('Rename', RENAME), perform('Duplicate', [{ edit: 'duplicate', paths: ['root/b'] }])]
+  expect(rootOf(editor())?.children.map((child) => child.name)).toEqual(['b', 'b_2'])
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  server.release()
+  await vi.waitFor(() => expect(server.sent).toEqual(['a', 'a+']))
+  server.release()
+  await Promise.all(both)
+  expect(text()).toBe('a++')
+})
+
+test('copies that are shown are what the next key is for; the original where they are refused', async () => {
+  withOneState()
+  const server = slowServer()
+  useEditor.setState({ selection: ['root/a'] })
+  const done = duplicate()
+  expect(editor().selection).toEqual(['root/a_2'])
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  vi.mocked(documents.edit).mockRejectedValue(new Error('the server is gone'))
+  server.release()
+  await done
+  withOneState()
+  useEditor.setState({ selection: ['root/a'] })
+  await duplicate()
+  expect(editor().selection).toEqual(['root/a'])
+})
+
+const NO_EDIT = { message: 'no', hint: '', index: 0, losses: [] }
+
+test('two names in a row: the answer to the first leaves the node with its second name selected', async () => {
+  withOneState()
+  const waiting: (() => void)[] = []
+  vi.mocked(documents.edit).mockImplementation((_id, before, edits) => {
+    const [edit] = edits
+    const name = edit?.edit === 'rename_node' ? edit.name : ''
+    const graph = machineNode('root', name, [node(`root/${name}`, ['done'])], [])
+    return new Promise((resolve) => waiting.push(() => resolve({ ...answer(`${before}+`), graph })))
+  })
+  useEditor.setState({ renaming: 'root/a', selection: ['root/a'] })
+  const first = rename('root/a', 'b')
+  useEditor.setState({ renaming: 'root/b' })
+  const second = rename('root/b', 'c')
+  await vi.waitFor(() => expect(waiting).toHaveLength(1))
+  waiting.shift()?.()
+  await first
+  const between = editor().selection
+  await vi.waitFor(() => expect(waiting).toHaveLength(1))
+  waiting.shift()?.()
+  await second
+  expect([between, editor().selection]).toEqual([['root/c'], ['root/c']])
+})
+
+test('a refused edit does not take the selection from what was chosen meanwhile', async () => {
+  const root = machineNode('root', 'a', [node('root/a', ['done']), node('root/z', ['done'])], [])
+  useEditor.setState({ history: newHistory({ ...draftOf(editor()), root }), renaming: 'root/a', selection: ['root/a'] })
+  vi.mocked(documents.edit).mockResolvedValue({ ...answer('a'), refused: NO_EDIT })
+  const done = rename('root/a', 'b')
+  useEditor.setState({ selection: ['root/z'] })
+  await done
+  expect(editor().selection).toEqual(['root/z'])
+})
+
+test('an edit on its way when another document is opened is kept in the draft, and selects nothing in the other', async () => {
+  withOneState()
+  const server = slowServer()
+  const read = { ...answer('y'), hash: 'y', graph: machineNode('root', 'a', [node('root/a', ['done'])], []) }
+  vi.mocked(documents.open).mockResolvedValue(read as never)
+  vi.mocked(documents.catalogue).mockResolvedValue({} as never)
+  useEditor.setState({ renaming: 'root/a', selection: ['root/a'] })
+  const done = rename('root/a', 'b')
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  const kept = new Map<string, string>()
+  vi.stubGlobal('localStorage', {
+    getItem: (key: string) => kept.get(key) ?? null,
+    setItem: (key: string, value: string) => kept.set(key, value),
+    removeItem: (key: string) => kept.delete(key),
+  })
+  const opened = openDocument('y.yaml', '')
+  server.release()
+  await Promise.all([done, opened])
+  expect(storedDraft('x.yaml')?.text).toBe('a+')
+  expect(editor().id).toBe('y.yaml')
+  expect(editor().selection).toEqual([])
+})
+
+test('a copy that is shown and not written yet can be copied', async () => {
+  withOneState()
+  const server = slowServer()
+  const texts: string[] = []
+  vi.mocked(documents.copy).mockImplementation((_id, from) => {
+    texts.push(from)
+    return Promise.resolve({ yaml: 'x' } as never)
+  })
+  useEditor.setState({ selection: ['root/a'] })
+  const made = duplicate()
+  const copied = copy()
+  await vi.waitFor(() => expect(server.sent).toEqual(['a']))
+  server.release()
+  await Promise.all([made, copied])
+  expect(texts).toEqual(['a+'])
+})
+
+test('why the first of two edits is refused is not hidden by the second, which is written', async () => {
+  withOneState()
+  vi.mocked(documents.edit).mockResolvedValueOnce({ ...answer('a'), refused: NO_EDIT })
+  vi.mocked(documents.edit).mockResolvedValueOnce(answer('a+'))
+  await Promise.all([perform('Rename', RENAME), perform('Duplicate', EDIT)])
+  expect(text()).toBe('a+')
+  expect(editor().notice).toMatchObject({ what: 'Rename', message: 'no' })
+  vi.mocked(documents.edit).mockResolvedValueOnce(answer('a++'))
+  await perform('Duplicate', EDIT)
+  expect(editor().notice).toBeUndefined()
 })

@@ -9,6 +9,7 @@ import { shiftedFindings, withDifference } from '../../document/editing/graphDif
 import { jumped, pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { areOfLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, type Draft, type EditNode } from '../../document/editing/model'
+import { withEdits } from '../../document/editing/optimisticEdits'
 import { Pause } from '../../document/pause'
 import { parentPath } from '../../document/path'
 import { lookForNames } from './cellNames'
@@ -52,23 +53,33 @@ export function inTurn<T>(act: () => Promise<T>): Promise<T> {
 /**
  * Apply edits to the text as it then is; undefined with the reason on the page where the server refuses.
  * Edits that say anew what is there already are made of what is there then.
- * Positions and notes are shown at once, and again as before where the server does not write them.
+ * What follows from the graph alone is shown at once, and again as before where the server does not write it.
  */
 export async function perform(label: string, edits: readonly Edit[] | (() => readonly Edit[])): Promise<EditAnswer | undefined> {
   const { id } = editor()
-  const shown = typeof edits !== 'function' && areOfLayout(edits) ? edits : undefined
+  const root = rootOf(editor())
+  const shown = typeof edits !== 'function' && root && withEdits(root, edits) ? edits : undefined
   if (shown) setEditor({ unwritten: [...editor().unwritten, shown] })
   const done = () => {
     if (shown) setEditor({ unwritten: editor().unwritten.filter((each) => each !== shown) })
   }
-  return inTurn(() => performNow(id, label, edits, done)).finally(done)
+  const { notice } = editor()
+  const written = () => {
+    done()
+    // What has been refused since this was asked for is still to be read.
+    if (editor().notice === notice) setEditor({ notice: undefined })
+  }
+  return inTurn(() => performNow(id, label, edits, written)).finally(() => {
+    done()
+    if (editor().id === id) dropStaleSelection()
+  })
 }
 
 async function performNow(
   id: string,
   label: string,
   edits: readonly Edit[] | (() => readonly Edit[]),
-  done: () => void,
+  written: () => void,
 ): Promise<EditAnswer | undefined> {
   try {
     // What was typed, or came from the disk, while the server was asked is edited in its turn.
@@ -90,9 +101,8 @@ async function performNow(
         setEditor({ history: replaced(editor().history, { ...before, hash: '' }) })
         continue
       }
-      done()
+      written()
       setHistory(pushed(settled(editor().history), label, draft))
-      setEditor({ notice: undefined })
       return answer
     }
   } catch (error) {
@@ -116,7 +126,7 @@ function draftAfter(answer: EditAnswer, before: Draft, isLayout: boolean): Draft
 /** The same for a node, with edits that are made of what it is by then: for lists and mappings, which are sent as a whole. */
 export function performOn(path: string, label: string, edits: (now: EditNode) => readonly Edit[]): Promise<EditAnswer | undefined> {
   return perform(label, () => {
-    const now = nodeOf(rootOf(editor()), path)
+    const now = nodeOf(draftOf(editor()).root, path)
     return now ? edits(now) : []
   })
 }

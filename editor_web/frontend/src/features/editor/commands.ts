@@ -38,6 +38,8 @@ import { goToProblem } from './problems'
 import { toggleReference } from './references'
 import { discard, save } from './session'
 import { toggleNotes, writeNote } from './notes'
+import { showSourceOf } from './stateSource'
+import { openReplacePalette } from './typeReplacement'
 import { chosenOf, editor, isDirty, isOpenNow, rootOf, setEditor } from './store'
 
 function withChosen(act: (path: string) => void): void {
@@ -64,6 +66,7 @@ const ACTIONS: Readonly<Record<EditorCommandId, Action>> = {
   connect: { needs: 'node', run: openConnectPalette },
   auto: { run: () => void autoConnect() },
   initial: { needs: 'node', run: () => void makeInitial() },
+  replace: { run: () => openReplacePalette() },
   rename: { needs: 'node', run: () => withChosen((path) => setEditor({ renaming: path })) },
   disable: { needs: 'nodes', run: () => void toggleDisabled() },
   note: { run: () => writeNote() },
@@ -79,6 +82,7 @@ const ACTIONS: Readonly<Record<EditorCommandId, Action>> = {
   ...ARRANGING,
   all: { run: selectAll },
   alike: { needs: 'node', run: selectAlike },
+  source: { needs: 'node', run: () => showSourceOf(chosenOf(editor())) },
   usages: { needs: 'node', run: () => findUsages(usedBy(chosenOf(editor()))) },
   enter: { needs: 'node', run: goIn },
   form: { needs: 'node', run: focusInspector },

@@ -37,7 +37,9 @@ export interface CardData extends Record<string, unknown> {
 export type CardNode = Node<CardData, 'leaf' | 'frame' | 'twig'>
 export type PillNode = Node<{ machine: string; outcome: string; count: number }, 'pill'>
 export type RulesNode = Node<{ node: EditNode }, 'rules'>
-export type CanvasNode = CardNode | PillNode | RulesNode
+/** Not drawn: what is in a container hangs on it while the container is dragged. */
+export type AnchorNode = Node<{ frame: string }, 'anchor'>
+export type CanvasNode = CardNode | PillNode | RulesNode | AnchorNode
 export type TransitionEdge = Edge<
   { points: readonly Point[] | undefined; outcome: string; machine: string; isQuiet: boolean },
   'transition'

@@ -13,6 +13,9 @@ import { blank, draftOf, editor, isDirty, showEditorRefusal, setEditor, showEdit
 
 /** Read a document and everything that can be put into it; a draft from an earlier visit is taken up. */
 export async function openDocument(id: string, node: string): Promise<void> {
+  // What is shown already and on its way to the server is part of the draft that is left.
+  if (editor().unwritten.length > 0) await inTurn(() => Promise.resolve())
+  storeDraftNow()
   useEditor.setState(blank(id), true)
   try {
     const catalogue = documents.catalogue().catch((error: unknown) => {
@@ -44,6 +47,18 @@ async function takeUp(text: string, base: string, baseText: string): Promise<voi
     isOutdated: base !== disk.hash,
   })
   await readAnew()
+}
+
+/** Classes of states were loaded anew: what can be put in, and what is wrong with the text, is asked again. */
+export async function takeStates(): Promise<void> {
+  const { id } = editor()
+  try {
+    const catalogue = await documents.catalogue()
+    if (editor().id === id) setEditor({ catalogue })
+  } catch (error) {
+    showEditorRefusal('Library', wordsOf(error), 'Load the page again.')
+  }
+  if (editor().id === id) await readAnew()
 }
 
 /** Show a node: go to the container around it and choose it. */

@@ -4,8 +4,8 @@ import type { CatalogueBody, ConflictBody } from '../../api/types'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
 import type { EdgeId } from '../../document/edgeId'
 import type { Edit } from '../../document/editing/edits'
-import { withLayout } from '../../document/editing/layoutEdits'
 import { nodeOf, ROOT, type Draft, type EditNode } from '../../document/editing/model'
+import { withEdits } from '../../document/editing/optimisticEdits'
 import { expansionOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
 import { pageStore } from '../../api/pageStore'
@@ -22,7 +22,10 @@ export interface AddRequest {
   readonly screen?: Point
 }
 
-export type PaletteRequest = ({ readonly kind: 'add' } & AddRequest) | { readonly kind: 'connect'; readonly path: string }
+export type PaletteRequest =
+  | ({ readonly kind: 'add' } & AddRequest)
+  | { readonly kind: 'connect'; readonly path: string }
+  | { readonly kind: 'replace'; readonly paths: readonly string[] }
 
 /** The inside of a behavior that is referred to, as its file was. */
 export interface ReferredBody {
@@ -46,7 +49,7 @@ export interface EditorState {
   /** The file as it is on disk, as far as this page knows. */
   readonly base: { readonly text: string; readonly hash: string }
   readonly history: History
-  /** Positions and notes that are shown already and on their way to the server. */
+  /** Edits that are shown already and on their way to the server. */
   readonly unwritten: readonly (readonly Edit[])[]
   readonly catalogue: CatalogueBody | undefined
   /** Of the document's own cell by kind; undefined where it names none or they are not known yet. */
@@ -157,17 +160,18 @@ export function draftOf(state: EditorState): Draft {
 type Unwritten = EditorState['unwritten']
 
 /** Of each graph the newest one that is shown in its place. */
-const laidOut = new WeakMap<EditNode, { readonly unwritten: Unwritten; readonly made: EditNode }>()
+const edited = new WeakMap<EditNode, { readonly unwritten: Unwritten; readonly made: EditNode }>()
 
 /** The graph as it is shown: with what is not written yet. */
 export function rootOf(state: EditorState): EditNode | undefined {
   const { root } = draftOf(state)
   const { unwritten } = state
   if (!root || unwritten.length === 0) return root
-  const known = laidOut.get(root)
+  const known = edited.get(root)
   if (known?.unwritten === unwritten) return known.made
-  const made = withLayout(root, unwritten.flat())
-  laidOut.set(root, { unwritten, made })
+  // What an earlier one made impossible is left out, as the server will refuse it.
+  const made = unwritten.reduce((now, edits) => withEdits(now, edits) ?? now, root)
+  edited.set(root, { unwritten, made })
   return made
 }
 

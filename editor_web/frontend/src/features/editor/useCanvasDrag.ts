@@ -7,18 +7,22 @@ import { boxOf, holderUnder, positionIn, type DrawnCanvas } from './canvasPlaces
 import type { CanvasNode } from './elements'
 import { place } from './placing'
 import { editor, rootOf } from './store'
+import type { FrameDrag } from './useFrameDrag'
 
 /** A shorter way is a click that shook. */
 const LEAST_PX = 2
 
 export interface CanvasDrag {
+  readonly onNodeDragStart: (event: unknown, node: CanvasNode, dragged: CanvasNode[]) => void
+  readonly onSelectionDragStart: (event: unknown, dragged: CanvasNode[]) => void
   readonly onNodeDragStop: (event: unknown, node: CanvasNode, dragged: CanvasNode[]) => void
   readonly onSelectionDragStop: (event: unknown, dragged: CanvasNode[]) => void
 }
 
 /** What is given to React Flow stays the same function: all it draws is looked through for each new one. */
-export function useCanvasDrag(canvas: DrawnCanvas, putBack: () => void): CanvasDrag {
+export function useCanvasDrag(canvas: DrawnCanvas, putBack: () => void, { begin, end }: FrameDrag): CanvasDrag {
   const stop = (dragged: readonly CanvasNode[]): void => {
+    end()
     const root = rootOf(editor())
     const moved = dragged.filter((node) => node.type !== 'pill' && node.type !== 'rules')
     if (!root || moved.length === 0) return
@@ -46,6 +50,8 @@ export function useCanvasDrag(canvas: DrawnCanvas, putBack: () => void): CanvasD
     if (free.length < changed.length) putBack()
   }
   return {
+    onNodeDragStart: useCallbackRef((_event: unknown, _node: CanvasNode, dragged: CanvasNode[]) => begin(dragged)),
+    onSelectionDragStart: useCallbackRef((_event: unknown, dragged: CanvasNode[]) => begin(dragged)),
     onNodeDragStop: useCallbackRef((_event: unknown, _node: CanvasNode, dragged: CanvasNode[]) => stop(dragged)),
     onSelectionDragStop: useCallbackRef((_event: unknown, dragged: CanvasNode[]) => stop(dragged)),
   }

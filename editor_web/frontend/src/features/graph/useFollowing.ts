@@ -15,7 +15,7 @@ import type { LaidOut } from './useLayout'
 export interface Following {
   /** Does the view go with the run? */
   readonly isOn: boolean
-  /** The paths of the active leaves, and of what waits at a gate; in one string, so that it changes only when they do. */
+  /** The paths of the active leaves and of what waits at a gate; in a paused run, where it stands. In one string, so that it changes only when they do. */
   readonly targets: string
   readonly resume: () => void
   /** Somebody moves the view: it stays where they put it. */
@@ -35,6 +35,14 @@ export function useFollowing(root: GraphNode): Following {
   )
   const active = useLive((s) => leaves.filter((path) => lookup(s.nodes, path)?.status === 'active').join('\n'))
   const waiting = useHolds((control) => control?.waiting.map((each) => each.path).join('\n') ?? '')
+  // At a breakpoint only the node that has stopped the run is looked at: what else is active is paused too, and may be far from it.
+  const stopped = useHolds(
+    (control) =>
+      control?.waiting
+        .filter((each) => each.reasons.includes('pause'))
+        .map((each) => each.path)
+        .join('\n') ?? '',
+  )
   // What one has looked at before a run says nothing about that run.
   if (run !== target) {
     setTarget(run)
@@ -42,7 +50,7 @@ export function useFollowing(root: GraphNode): Following {
   }
   return {
     isOn,
-    targets: [...new Set(`${active}\n${waiting}`.split('\n').filter(Boolean))].join('\n'),
+    targets: stopped || [...new Set(`${active}\n${waiting}`.split('\n').filter(Boolean))].join('\n'),
     resume: () => setOn(true),
     pause: () => setOn(false),
   }

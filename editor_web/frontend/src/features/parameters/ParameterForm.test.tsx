@@ -6,6 +6,8 @@ import { Refusal } from '../../../testing/server'
 import type { BehaviorView, RunStarted, StartBody } from '../../api/types'
 import { useRefusal } from '../../api/refusal'
 import { ParameterForm } from './ParameterForm'
+import { StartButton } from './StartButton'
+import { StartProvider } from './StartProvider'
 
 const SHIFT: BehaviorView = {
   id: 'behaviors/shift.yaml',
@@ -25,15 +27,22 @@ const SHIFT: BehaviorView = {
 }
 const DEFAULTS = { part: 'hca_1', speed: 0.3, cycles: 1, verify: true }
 const started = vi.fn()
+const wrong = vi.fn()
 
-function Form({ of = SHIFT, obstacle, shown }: { readonly of?: BehaviorView; readonly obstacle?: string; readonly shown?: string }) {
+interface FormProps {
+  readonly of?: BehaviorView
+  readonly obstacle?: string
+  readonly shown?: string
+  /** Is the form in the document, or the button alone? */
+  readonly isDrawn?: boolean
+}
+
+function Form({ of = SHIFT, obstacle, shown, isDrawn = true }: FormProps) {
   return (
-    <>
-      <ParameterForm behavior={of} obstacle={obstacle} place="In the cell bench." terminal="flexcell run" onStarted={started} run={shown} />
-      <button type="submit" form="parameters">
-        Start
-      </button>
-    </>
+    <StartProvider behavior={of} onStarted={started}>
+      {isDrawn && <ParameterForm behavior={of} place="In the cell bench." terminal="flexcell run" run={shown} />}
+      <StartButton obstacle={obstacle} onWrong={wrong} />
+    </StartProvider>
   )
 }
 
@@ -43,6 +52,7 @@ function sent(): StartBody[] {
 
 beforeEach(() => {
   started.mockReset()
+  wrong.mockReset()
   server().on('POST /runs', { run: 'r1' }).on('GET /cell/connection', { connected: true, reason: '' })
 })
 
@@ -71,6 +81,30 @@ it('says at a field what is wrong with it, and sends nothing until it is right',
   expect(sent()).toEqual([])
 })
 
+it('starts where the form is not drawn yet, or no more', async () => {
+  const user = show(<Form of={{ ...SHIFT, parameters: [] }} isDrawn={false} />)
+  await user.click(screen.getByRole('button', { name: 'Start' }))
+  await waitFor(() => expect(started).toHaveBeenCalledOnce())
+  expect(sent()).toHaveLength(1)
+})
+
+it('starts nothing of which the parameters cannot be read, and says so', async () => {
+  const user = show(<Form of={JSON.parse(JSON.stringify({ ...SHIFT, parameters: null })) as BehaviorView} isDrawn={false} />)
+  await user.click(screen.getByRole('button', { name: 'Start' }))
+  expect(useRefusal.getState().refusal?.message).toBe('its parameters cannot be read')
+  expect(sent()).toEqual([])
+})
+
+it('brings the form forward when a value is wrong, and only then', async () => {
+  const user = show(<Form />)
+  await user.click(screen.getByRole('button', { name: 'Start' }))
+  await waitFor(() => expect(wrong).toHaveBeenCalledOnce())
+  await user.type(screen.getByLabelText(/^Part/), 'hca_1')
+  await user.click(screen.getByRole('button', { name: 'Start' }))
+  await waitFor(() => expect(started).toHaveBeenCalledOnce())
+  expect(wrong).toHaveBeenCalledOnce()
+})
+
 it('puts the words of the engine at the field that they are about', async () => {
   const words = { message: "no entry is named 'ghost'", where: 'parameters.part', hint: 'see the store' }
   server().on('POST /runs', new Refusal(422, words))
@@ -80,6 +114,7 @@ it('puts the words of the engine at the field that they are about', async () => 
   expect(await screen.findByText("no entry is named 'ghost' (see the store)")).toBeVisible()
   expect(screen.getByLabelText(/^Part/)).toHaveAttribute('aria-invalid', 'true')
   expect(started).not.toHaveBeenCalled()
+  expect(wrong).toHaveBeenCalledOnce()
 })
 
 it('says beside the button what is about no field, and asks whether the cell is lost', async () => {

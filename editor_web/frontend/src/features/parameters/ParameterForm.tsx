@@ -9,40 +9,30 @@ import { ParameterField } from '../../components/ParameterField'
 import { Words } from '../../components/Words'
 import { StartOptions } from './StartOptions'
 import { useOffers } from './useOffers'
-import { useStart } from './useStart'
+import { useSharedStart } from './StartProvider'
 
-/** The id by which buttons elsewhere on the page submit the form. */
+/** The id by which the Start button belongs to the form. */
 export const FORM_ID = 'parameters'
 
 const MONOSPACE = { input: { fontFamily: 'var(--mantine-font-family-monospace)' } }
 
 export interface ParameterFormProps {
   readonly behavior: BehaviorView
-  /** Why it cannot be started now; undefined when it can. */
-  readonly obstacle: string | undefined
   /** Where it will run, in words. */
   readonly place: string
   /** The command line that runs it in virtual time, which a server does not. */
   readonly terminal: string
-  readonly onStarted: () => void
   /** The run that is shown, whose values can be taken over. */
   readonly run: string | undefined
 }
 
-export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, run }: ParameterFormProps) {
-  const start = useStart(behavior, onStarted)
+export function ParameterForm({ behavior, place, terminal, run }: ParameterFormProps) {
+  const start = useSharedStart()
+  if (start.damage) throw start.damage
   const offersOf = useOffers(start.fields)
-  const { fields, values, set, problems, submit, repeat, seed, setSeed } = start
+  const { fields, values, set, problems, repeat, seed, setSeed } = start
   return (
-    <form
-      id={FORM_ID}
-      noValidate
-      aria-label="Parameters"
-      onSubmit={(event) => {
-        event.preventDefault()
-        if (obstacle === undefined) void submit()
-      }}
-    >
+    <form id={FORM_ID} noValidate aria-label="Parameters" onSubmit={(event) => event.preventDefault()}>
       <Stack gap={14} maw="34rem">
         {behavior.fit.obstacle && (
           <Alert color="yellow" icon={<IconAlertTriangle size={16} aria-hidden />} title="It cannot be started here">

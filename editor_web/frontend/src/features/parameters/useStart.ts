@@ -8,6 +8,7 @@ import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
 import { clearRefusal, showRefusal, send } from '../../api/refusal'
+import { mayMoveDevices } from '../../api/realDevices'
 import type { BehaviorView, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
@@ -49,11 +50,13 @@ export function useStart(behavior: BehaviorView, onStarted: () => void, place: P
     setProblems({})
   }
 
-  async function submit(): Promise<void> {
+  /** Start the run; whether the values are right, as far as the form and the server can tell. */
+  async function submit(): Promise<boolean> {
     const found = problemsOf(fields, values)
     setProblems(found)
     clearRefusal()
-    if (Object.values(found).some(Boolean) || !data) return
+    if (Object.values(found).some(Boolean) || !data) return false
+    if (!(await mayMoveDevices())) return true
     try {
       const body: StartBody = {
         behavior: behavior.id,
@@ -73,7 +76,9 @@ export function useStart(behavior: BehaviorView, onStarted: () => void, place: P
       else showRefusal('Start', answer.message, answer.hint)
       // Perhaps because the cell is lost; whoever tells of that hears it.
       void client.prefetchQuery(cellConnectionQuery())
+      return name === undefined
     }
+    return true
   }
 
   /** Be its operator before its first node is entered, or it would ask nobody for the first outcomes. */

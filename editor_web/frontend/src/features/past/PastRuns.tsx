@@ -1,8 +1,9 @@
 /** The runs of the journal: found by words, by how they ended, by the day; failures are one press away. */
-import { ActionIcon, Alert, Box, Button, Checkbox, CloseButton, Group, List, Menu, Text, TextInput } from '@mantine/core'
+import { ActionIcon, Box, Button, Checkbox, CloseButton, Group, List, Menu, Text, TextInput } from '@mantine/core'
 import { useDebouncedValue } from '@mantine/hooks'
 import { IconDots, IconGitCompare, IconHistory, IconSearch } from '@tabler/icons-react'
 import { useId, useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { useLastAnswer } from '../../api/queryClient'
 import { pastQueries, type PastQuery } from '../../api/timeline'
 import type { PastRunBody } from '../../api/types'
@@ -82,11 +83,7 @@ export function PastRuns({ href, trendHref, onOpen, onCompare }: PastRunsProps) 
         ))}
       </Group>
       <CompareChosen chosen={chosen} onCompare={onCompare} onNone={() => setChosen([])} />
-      {problem && (
-        <Alert color="red" variant="light" p="xs" my="xs">
-          {problem}
-        </Alert>
-      )}
+      <Refusal>{problem}</Refusal>
       {found?.runs.length === 0 && (
         <Empty icon={<IconHistory size={26} stroke={1.4} aria-hidden />} title={isFiltered ? 'No run matches' : 'No past runs'}>
           {isFiltered

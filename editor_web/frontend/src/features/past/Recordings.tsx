@@ -1,6 +1,7 @@
 /** The recordings that lie in the project. */
-import { Alert, Box, List, Text } from '@mantine/core'
+import { Box, List, Text } from '@mantine/core'
 import { IconFileAnalytics } from '@tabler/icons-react'
+import { Refusal } from '../../components/Refusal'
 import { useAnswer } from '../../api/queryClient'
 import { pastQueries } from '../../api/timeline'
 import type { RecordingFile } from '../../api/types'
@@ -19,11 +20,7 @@ export function Recordings({ href, onOpen }: RecordingsProps) {
   const { value: files, problem } = useAnswer(pastQueries.recordings())
   return (
     <Box h="100%" px="md" pt="sm" pb="lg" style={{ overflow: 'auto' }}>
-      {problem && (
-        <Alert color="red" variant="light" p="xs" my="xs">
-          {problem}
-        </Alert>
-      )}
+      <Refusal>{problem}</Refusal>
       {files?.length === 0 && (
         <Empty icon={<IconFileAnalytics size={26} stroke={1.4} aria-hidden />} title="No recordings">
           Record a run with <code>flexcell run --record FILE.mcap</code>; recordings anywhere in the project are listed here.

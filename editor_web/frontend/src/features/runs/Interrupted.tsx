@@ -1,6 +1,7 @@
 /** Runs whose engine died: what they ask, and going on with them. */
+import { Refusal } from '../../components/Refusal'
 import { lookup, type Dict } from '../../document/dict'
-import { Alert, Button, Checkbox, Group, List, Paper, Radio, Stack, Text } from '@mantine/core'
+import { Button, Checkbox, Group, List, Paper, Radio, Stack, Text } from '@mantine/core'
 import { IconHeartbeat } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, ServerError } from '../../api/client'
@@ -88,14 +89,9 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
           </Paper>
         )}
         {problem && (
-          <Alert color="red" variant="light" title="It was not resumed" role="alert">
+          <Refusal title="It was not resumed:" hint={problem.hint}>
             {problem.message}
-            {problem.hint && (
-              <Text inherit c="dimmed">
-                {problem.hint}
-              </Text>
-            )}
-          </Alert>
+          </Refusal>
         )}
         <Group gap="3xs">
           <Button size="compact-sm" disabled={obstacle !== undefined || isOpen || isSent} title={obstacle} onClick={() => void resume()}>

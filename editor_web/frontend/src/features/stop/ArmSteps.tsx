@@ -1,6 +1,7 @@
 /** The steps of the recovery that are about arms, what they hold and the parts. */
 import { Button, Group, Paper, Text } from '@mantine/core'
 import { useState, type ReactNode } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { recovery } from '../../api/recovery'
 import type { ArmRecovery, CellStop } from '../../api/types'
 import { deviceWords, partWords } from '../../document/recovery'
@@ -66,7 +67,7 @@ export function PartsStep({ stop, mayOperate }: StepProps) {
       <Text size="sm" c="dimmed">
         A part that is kept belongs to its arm: it moves with it and does not block it.
       </Text>
-      <Problem command={command} />
+      <Refusal>{command.problem}</Refusal>
     </>
   )
 }
@@ -136,7 +137,7 @@ export function HomeStep({ stop, mayOperate }: StepProps) {
           )}
         </ArmRow>
       ))}
-      <Problem command={command} />
+      <Refusal>{command.problem}</Refusal>
     </>
   )
 }
@@ -158,7 +159,7 @@ export function ResetStep({ stop, mayOperate }: StepProps) {
           Reset parts
         </Button>
       </Group>
-      <Problem command={command} />
+      <Refusal>{command.problem}</Refusal>
     </>
   )
 }
@@ -210,14 +211,4 @@ export function StepRow({ label, tools, children }: StepRowProps) {
 /** Steps that move are those of a stopped cell. */
 function canAct(stop: CellStop, mayOperate: boolean, command: StepCommand): boolean {
   return mayOperate && stop.phase === 'stopped' && command.busy === ''
-}
-
-export function Problem({ command }: { readonly command: StepCommand }) {
-  return (
-    command.problem && (
-      <Text size="sm" mt="xs" c="var(--failed)" role="alert" style={{ overflowWrap: 'anywhere' }}>
-        {command.problem}
-      </Text>
-    )
-  )
 }

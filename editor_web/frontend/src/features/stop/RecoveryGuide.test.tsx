@@ -27,7 +27,18 @@ function stopped(told: Partial<CellStop> = {}): CellStop {
     { name: 'left', status: 'at_rest', after_s: 0.42, reason: '' },
     { name: 'right', status: 'failed', after_s: 5, reason: 'it did not answer' },
   ] as const
-  return { number: 3, phase: 'stopped', reason: 'smoke', since_unix_s: 0, devices, runs: [RUN], arms: [ARM], parts: 'open', ...told }
+  return {
+    number: 3,
+    phase: 'stopped',
+    reason: 'smoke',
+    since_unix_s: 0,
+    devices,
+    runs: [RUN],
+    arms: [ARM],
+    parts: 'open',
+    real: [],
+    ...told,
+  }
 }
 
 const AT_REST = stopped().devices.slice(0, 1)
@@ -38,7 +49,13 @@ function guide(stop: CellStop, role = 'operator') {
   const user = show(
     <>
       <StoppedBanner />
-      <RecoveryGuide renderJog={(arm) => <p>jog panel of {arm}</p>} onTeach={() => led('teach')} onRun={led} onBehavior={led} />
+      <RecoveryGuide
+        renderJog={(arm) => <p>jog panel of {arm}</p>}
+        renderEnable={({ name }) => <button type="button">Enable {name}…</button>}
+        onTeach={() => led('teach')}
+        onRun={led}
+        onBehavior={led}
+      />
     </>,
   )
   return { user, socket }
@@ -175,4 +192,16 @@ it('is asked for over HTTP while the live stream is down', async () => {
   server().on('GET /cell/stop', stopped({ phase: 'released', devices: AT_REST }))
   socket.cut()
   expect(await screen.findByText('The stop is released')).toBeVisible()
+})
+
+it('offers to enable the real devices that may not move, and says why they may not', () => {
+  const real = [
+    { name: 'left', connected: true, enabled: false, problem: 'protective stop' },
+    { name: 'left/gripper', connected: true, enabled: true, problem: '' },
+  ]
+  guide(stopped({ devices: AT_REST, real }))
+  expect(step(/Enable real devices/)).toHaveTextContent('open: left: may not move')
+  expect(screen.getByRole('group', { name: 'left/gripper' })).toHaveTextContent('may move')
+  expect(screen.getByText(/may not move: protective stop/)).toBeVisible()
+  expect(screen.getAllByRole('button', { name: /^Enable .*…$/ })).toHaveLength(1)
 })

@@ -3,8 +3,10 @@ import { Accordion, CloseButton, Group, Stack, Text, Title, VisuallyHidden } fro
 import { IconCircle, IconMinus } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
+import type { DeviceRecovery } from '../../api/types'
 import { nextStep, STATE_WORDS, stepsOf, type RecoveryStep, type StepId, type StepState } from '../../document/recovery'
 import { StatusIcon } from '../../components/StatusIcon'
+import { EnableStep } from './EnableStep'
 import { HomeStep, JogStep, PartsStep, ResetStep, RestStep } from './ArmSteps'
 import { openGuide } from './guide'
 import { ReleaseStep, RunsStep } from './RunSteps'
@@ -13,6 +15,8 @@ import type { StepProps } from './useStep'
 export interface RecoveryGuideProps {
   /** Jogs an arm in place. */
   readonly renderJog: (arm: string) => ReactNode
+  /** Enables a real device, by its address on the bus. */
+  readonly renderEnable: (device: DeviceRecovery) => ReactNode
   readonly onTeach: () => void
   readonly onRun: (id: string) => void
   readonly onBehavior: (id: string) => void
@@ -108,6 +112,7 @@ function StepBody({
   stop,
   mayOperate,
   renderJog,
+  renderEnable,
   onTeach,
   onRun,
   onBehavior,
@@ -115,6 +120,8 @@ function StepBody({
   switch (id) {
     case 'rest':
       return <RestStep stop={stop} />
+    case 'enable':
+      return <EnableStep stop={stop} renderEnable={renderEnable} />
     case 'parts':
       return <PartsStep stop={stop} mayOperate={mayOperate} />
     case 'jog':

@@ -1,11 +1,13 @@
 /** The last steps of the recovery: the release of the stop, and what becomes of the runs that it has ended. */
 import { Button, Group, List, Text } from '@mantine/core'
+import { Refusal } from '../../components/Refusal'
 import { api } from '../../api/client'
 import { recovery } from '../../api/recovery'
+import { mayMoveDevices } from '../../api/realDevices'
 import type { StoppedRun } from '../../api/types'
 import { partWords, releaseObstacle, undecided } from '../../document/recovery'
 import { fileTitle } from '../../document/path'
-import { Problem, StepRow } from './ArmSteps'
+import { StepRow } from './ArmSteps'
 import { Confirm } from './Confirm'
 import { useStep, type StepProps } from './useStep'
 
@@ -44,7 +46,7 @@ export function ReleaseStep({ stop, mayOperate }: StepProps) {
           </List>
         </Confirm>
       </Group>
-      <Problem command={command} />
+      <Refusal>{command.problem}</Refusal>
     </>
   )
 }
@@ -59,6 +61,7 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
   const isReleased = stop.phase === 'released'
 
   async function resume(run: StoppedRun): Promise<void> {
+    if (!(await mayMoveDevices())) return
     const begin = { run: run.id, seq: run.seq, path: run.path }
     const started = await api.start({ behavior: run.behavior, parameters: {}, begin }, `recovery-${stop.number}-${run.id}`)
     onRun(started.run)
@@ -107,7 +110,7 @@ export function RunsStep({ stop, mayOperate, onRun, onBehavior }: RunsStepProps)
           Leave {stop.runs.length === 1 ? 'it' : 'them'} ended
         </Button>
       </Group>
-      <Problem command={command} />
+      <Refusal>{command.problem}</Refusal>
     </>
   )
 }

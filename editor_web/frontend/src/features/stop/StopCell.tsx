@@ -20,7 +20,8 @@ const HINT =
 const SHOWN_MS = 8000
 
 export function StopCell() {
-  const isShown = useSession((s) => s.session?.role === 'operator')
+  const role = useSession((s) => s.session?.role)
+  const isShown = role === 'operator'
   const top = useTop()
   // The page asks too; STOP does not depend on it.
   useEffect(() => void api.session().catch(() => undefined), [])
@@ -28,8 +29,9 @@ export function StopCell() {
   useEffect(() => listenForStopKey(), [])
   useEffect(() => letTabReach(() => button.current), [])
   useEffect(() => {
-    document.body.toggleAttribute('data-has-stop', isShown)
-  }, [isShown])
+    // The page comes with room for it, so that nothing moves when it is there.
+    if (role !== undefined) document.body.toggleAttribute('data-has-stop', isShown)
+  }, [role, isShown])
   if (!isShown) return null
   return createPortal(
     <section className={classes.stop} aria-label="Stop of the cell">

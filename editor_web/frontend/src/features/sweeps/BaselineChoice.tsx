@@ -1,6 +1,7 @@
 /** A sweep compared with another version that has executed the same runs: is this one worse? */
-import { Alert, Button, Group, NativeSelect, TextInput } from '@mantine/core'
+import { Button, Group, NativeSelect, TextInput } from '@mantine/core'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { sweepsApi } from '../../api/sweeps'
 import type { Baseline, SweepComparison } from '../../api/types'
@@ -117,11 +118,7 @@ export function BaselineChoice({ sweep, revision, onSelect }: BaselineChoiceProp
           </Group>
         </form>
       )}
-      {problem && (
-        <Alert color="red" variant="light" p="xs">
-          {problem}
-        </Alert>
-      )}
+      <Refusal>{problem}</Refusal>
       {comparison && <ComparedRates compared={comparison} onSelect={onSelect} />}
     </>
   )

@@ -1,7 +1,8 @@
 /** Making a sweep: what is executed, how often, what is varied and what is required; it becomes a document. */
-import { Alert, Button, Fieldset, Group, NativeSelect, Stack, Text, TextInput } from '@mantine/core'
+import { Button, Fieldset, Group, NativeSelect, Stack, Text, TextInput } from '@mantine/core'
 import { IconPlus } from '@tabler/icons-react'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { behaviorQueries } from '../../api/behaviorQueries'
 import { wordsOf } from '../../api/client'
 import { useAnswer } from '../../api/queryClient'
@@ -163,11 +164,7 @@ export function NewSweepForm({ taken, onMade }: NewSweepProps) {
           value={draft.id}
           onChange={(event) => change({ id: event.currentTarget.value })}
         />
-        {problem && (
-          <Alert color="red" variant="light" p="xs">
-            {problem}
-          </Alert>
-        )}
+        <Refusal>{problem}</Refusal>
         <Group gap="xs">
           <Button size="xs" type="submit" aria-disabled={isSending || undefined} data-disabled={isSending}>
             {step || 'Create and start'}

@@ -2,6 +2,7 @@
 import { ActionIcon, Alert, Anchor, Box, Button, Code, Group, Paper, SimpleGrid, Text, Title } from '@mantine/core'
 import { IconPlayerPlay, IconX } from '@tabler/icons-react'
 import { useEffect, useRef, useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { useAnswer } from '../../api/queryClient'
 import { recordRun, sweepQueries } from '../../api/sweeps'
@@ -55,11 +56,7 @@ export function RunDetails({ sweep, number, subject, mayOperate, onOpen, onOpenS
           <IconX size={15} aria-hidden />
         </ActionIcon>
       </Group>
-      {problem && (
-        <Alert color="red" variant="light" p="xs">
-          {problem}
-        </Alert>
-      )}
+      <Refusal>{problem}</Refusal>
       {run && (
         <>
           {run.cause && <Chain cause={run.cause} />}
@@ -181,11 +178,7 @@ function Again({
           )}
         </Alert>
       )}
-      {problem && (
-        <Alert color="red" variant="light" p="xs">
-          {problem}
-        </Alert>
-      )}
+      <Refusal>{problem}</Refusal>
     </Box>
   )
 }

@@ -1,7 +1,8 @@
 /** Shrinks a failing run to the smallest change from nominal that still fails, and saves that as a test case. */
-import { Alert, Button, Group, NativeSelect, Paper, Progress, Text } from '@mantine/core'
+import { Button, Group, NativeSelect, Paper, Progress, Text } from '@mantine/core'
 import { IconArrowsMinimize, IconPlayerStop } from '@tabler/icons-react'
 import { useId, useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { sweepsApi } from '../../api/sweeps'
 import type { ShrinkBody, Shrinking, TrialResult } from '../../api/types'
 import { foundOf } from '../../document/searches'
@@ -84,11 +85,7 @@ export function ShrinkRun({ sweep, run, subject, mayOperate, onOpenSweep }: Shri
           )}
         </>
       )}
-      {words && (
-        <Alert color="red" variant="light" p="xs">
-          {words}
-        </Alert>
-      )}
+      <Refusal>{words}</Refusal>
     </Paper>
   )
 }

@@ -1,7 +1,8 @@
 /** How far a sweep is, and starting, stopping and continuing it. */
-import { Alert, Button, Progress, Text } from '@mantine/core'
+import { Button, Progress, Text } from '@mantine/core'
 import { IconPlayerPlay, IconPlayerStop } from '@tabler/icons-react'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { wordsOf } from '../../api/client'
 import { sweepsApi } from '../../api/sweeps'
 import type { SweepLive } from '../../api/types'
@@ -75,11 +76,7 @@ export function SweepControls({ sweep, live, mayOperate, broken }: SweepControls
           {live.status === 'stopping' ? 'Stopping …' : 'Stop the sweep'}
         </Button>
       )}
-      {(problem || live.problem) && (
-        <Alert color="red" variant="light" p="xs" flex="1 1 100%">
-          {problem || live.problem}
-        </Alert>
-      )}
+      <Refusal>{problem || live.problem}</Refusal>
     </>
   )
 }

@@ -10,7 +10,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { StatusBadge } from '../../components/StatusBadge'
 import type { Status } from '../../document/runState'
 import { FrameCapture } from './FrameCapture'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 import { toolWords } from './ToolRow'
 
 const LOOKS: Readonly<Record<string, Status>> = {
@@ -121,7 +121,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
           {hand.said}
         </Text>
       )}
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
     </Group>
   )
 }

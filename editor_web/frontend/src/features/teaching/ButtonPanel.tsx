@@ -6,7 +6,7 @@ import { useDisabledReason, useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 import { buttonFault, keepKeys, useButtonMap, type KeyButton } from './buttonMap'
 import { RowTool } from '../../components/RowTool'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 export function ButtonPanel() {
   const { isOn, keys, pressed } = useButtonMap()
@@ -59,7 +59,7 @@ export function ButtonPanel() {
           </Text>
         )}
       </Group>
-      {refusal && <Problem>{refusal.message}. Add a trigger for it.</Problem>}
+      {refusal && <Refusal>{refusal.message}. Add a trigger for it.</Refusal>}
     </Stack>
   )
 }

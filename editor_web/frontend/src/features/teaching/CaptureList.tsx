@@ -19,7 +19,7 @@ import { Facts } from './Facts'
 import { Part } from './Part'
 import { PlayBack } from './PlayBack'
 import { poseWords } from './poseWords'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 import { SaveForm } from './SaveForm'
 
 export function CaptureList({ arm }: { readonly arm: string }) {
@@ -126,7 +126,7 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           onPress={() => void teach.discard(capture.id).then(undefined, (error: unknown) => setProblem(wordsOf(error)))}
         />
       </Group>
-      {(problem || looked) && <Problem>{problem || looked?.message}</Problem>}
+      <Refusal>{problem || looked?.message}</Refusal>
       {capture.form !== 'gripper' && (
         <PlayBack arm={robot} what={{ kind: '', name: '', capture: capture.id }} words={`capture ${capture.id}`} onLook={look} />
       )}

@@ -11,7 +11,7 @@ import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types
 import { CommandButton } from '../../components/CommandButton'
 import { apart, changesOf, curveOf, degrees, endOf, errorsOf } from '../../document/teaching'
 import { Chart, CurveKey, type Drawn } from './Chart'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 /** As many as there are colours, here and in the cell. */
 export const MOST_COMPARED = 5
@@ -58,7 +58,7 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
           />
         </>
       )}
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
       {learned.length > 0 && (
         <Table fz="xs" verticalSpacing={4} horizontalSpacing="xs" aria-label="Learned against shown">
           <Table.Thead>

@@ -11,7 +11,7 @@ import { EntryHistory } from './EntryHistory'
 import { PLAYED } from './forms'
 import { Part } from './Part'
 import { PlayBack } from './PlayBack'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryChanged }) {
   const off = useDisabledReason()
@@ -58,7 +58,7 @@ export function EntryDetails({ arm, entry }: { readonly arm: string; readonly en
           onPress={() => attempt(() => teach.remove(kind, name))}
         />
       </Group>
-      {(problem || looked) && <Problem>{problem || looked?.message}</Problem>}
+      <Refusal>{problem || looked?.message}</Refusal>
       {PLAYED.has(kind) && <PlayBack arm={arm} what={what} words={`${kind} ${name}`} onLook={look} />}
       <Tags
         key={entry.revision}

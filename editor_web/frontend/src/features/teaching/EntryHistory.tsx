@@ -13,7 +13,7 @@ import { useFits } from './Comparison'
 import { Facts } from './Facts'
 import { PLAYED } from './forms'
 import { poseWords } from './poseWords'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 const MOST_SHOWN = 1200
 
@@ -109,7 +109,7 @@ function Was({ arm, entry, revision }: WasProps) {
             before && after && revision !== entry.revision && { name: 'Brought back', value: changesOf(after, before).join(', ') },
           ]}
         />
-        {(problem || unfit) && <Problem>{problem || unfit}</Problem>}
+        <Refusal>{problem || unfit}</Refusal>
         {hasPlace && (
           <CommandButton
             label="Show this one in the cell"

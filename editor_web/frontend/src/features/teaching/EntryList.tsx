@@ -11,7 +11,7 @@ import { Comparison, MOST_COMPARED, type Compared } from './Comparison'
 import { EntryDetails } from './EntryDetails'
 import { PLAYED } from './forms'
 import { Part } from './Part'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 const KINDS = ['joints', 'pose', 'dmp', 'cart_dmp', 'trajectory', 'gripper', 'cart_offsets', 'record']
 const TYPING_MS = 150
@@ -45,7 +45,7 @@ export function EntryList({ arm }: { readonly arm: string }) {
           data={[{ value: '', label: 'all' }, ...KINDS]}
         />
       </Group>
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
       {page && page.entries.length === 0 ? (
         <Empty title={text || kind ? 'Nothing is found' : 'No entries yet'}>
           {text || kind ? 'Search for the beginning of a word of the name or of a tag.' : 'Capture something and save it under a name.'}

@@ -18,7 +18,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { HoldButton } from './HoldButton'
 import classes from './Jog.module.css'
 import { Part } from './Part'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 const PUSH_S = 0.3
 const REPEAT_MS = 200
@@ -61,7 +61,7 @@ export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
         </Text>
       </Group>
       {canPush && <PushPad arm={arm.name} obstacle={off ?? (isFloating ? undefined : 'let it float first')} onProblem={setProblem} />}
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
     </Part>
   )
 }

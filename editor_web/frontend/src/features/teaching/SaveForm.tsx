@@ -11,7 +11,7 @@ import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, endOf, nameFault, tagFault, tagsOf } from '../../document/teaching'
 import { FORM_WORDS, formsOf, type Form } from './forms'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 
 const TYPING_MS = 250
 
@@ -128,7 +128,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
             {message}
           </Text>
         </Group>
-        {problem && <Problem>{problem}</Problem>}
+        <Refusal>{problem}</Refusal>
       </Stack>
     </Paper>
   )

@@ -10,7 +10,7 @@ import type { Trigger, TriggerStatus } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
 import { RowTool } from '../../components/RowTool'
-import { Problem } from './Problem'
+import { Refusal } from '../../components/Refusal'
 import { CALLBACK_WORDS, TYPE_WORDS } from './triggerWords'
 import classes from './Triggers.module.css'
 import { TriggerForm } from './TriggerForm'
@@ -151,7 +151,7 @@ function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly t
           />
         </Group>
       )}
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
     </>
   )
 }
@@ -203,7 +203,7 @@ function TriggerText() {
           {message}
         </Text>
       </Group>
-      {problem && <Problem>{problem}</Problem>}
+      <Refusal>{problem}</Refusal>
     </Stack>
   )
 }

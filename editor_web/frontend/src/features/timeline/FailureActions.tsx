@@ -5,6 +5,7 @@ import { useState } from 'react'
 import { api, wordsOf } from '../../api/client'
 import { lookAt, useLive } from '../../api/live'
 import { originOf } from '../../api/origin'
+import { mayMoveDevices } from '../../api/realDevices'
 import type { RunFailure, RunView } from '../../api/types'
 import { placesOf } from '../../document/failure'
 import { isActive } from '../../document/runState'
@@ -44,6 +45,7 @@ export function FailureActions(props: FailureActionsProps) {
   }
 
   async function retry(): Promise<void> {
+    if (!(await mayMoveDevices())) throw new Error('Not started')
     const { seed } = await originOf(run.id)
     const begin = { run: run.id, seq: failure.entered_seq, path: failure.path }
     const started = await api.start({ behavior, seed, begin }, `retry ${run.id} ${Date.now()}`)

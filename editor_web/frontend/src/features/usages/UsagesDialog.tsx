@@ -2,6 +2,7 @@
 import { Autocomplete, Code, Group, List, ScrollArea, SegmentedControl, Stack, Text, Title } from '@mantine/core'
 import { useQuery } from '@tanstack/react-query'
 import { useState } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { catalogueQuery } from '../../api/catalogueQuery'
 import { useAnswer } from '../../api/queryClient'
 import type { CatalogueBody, Usage } from '../../api/types'
@@ -54,11 +55,7 @@ export function UsagesDialog({ asked, onOpen }: UsagesDialogProps) {
             onChange={(name) => setUsed({ ...used, name })}
           />
         </Group>
-        {problem && (
-          <Text size="sm" c="var(--failed)" role="alert">
-            {problem}
-          </Text>
-        )}
+        <Refusal>{problem}</Refusal>
         <Text size="sm" c="dimmed" role="status">
           {used.name === '' ? 'Of which one?' : value && wordsOf(value.found, byDocument.size)}
         </Text>

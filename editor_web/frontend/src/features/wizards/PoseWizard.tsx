@@ -2,6 +2,7 @@
 import { NativeSelect, SegmentedControl, Stack, Switch } from '@mantine/core'
 import { IconFocusCentered } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
+import { Refusal } from '../../components/Refusal'
 import { useData } from '../../api/data'
 import type { CellStateFrame } from '../../api/types'
 import type { PoseRequest } from '../../api/valueWizard'
@@ -168,7 +169,7 @@ function ThreePoints({ arm, onMade }: { readonly arm: string; readonly onMade: (
           }
         />
       </div>
-      {made?.fault && <span role="alert">{made.fault}</span>}
+      <Refusal>{made?.fault}</Refusal>
     </Stack>
   )
 }
