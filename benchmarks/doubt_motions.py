@@ -13,6 +13,7 @@ from benchmarks.force_controlled_wiping import Wiping, rms, three_passes
 from engine.document import RealismName
 from engine.messages import Pose
 from engine.skills.arm_control import ControllerName, ControlSettings
+from robots.control.commanding.arm_commands import ConfigureArm, FollowTrajectory
 from robots.control.motion_event import MotionFinished
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
@@ -20,7 +21,6 @@ from robots.motion import plan_line
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array, JointTrajectory, Tolerance
 from robots.scene.sim_scene import ArmPlacement, SimScene
-from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 

@@ -19,6 +19,7 @@ from engine.document import RealismName
 from engine.messages import Pose
 from engine.skills.contact import RIGID_N_M
 from engine.skills.dmp import Compliance
+from robots.control.commanding.arm_commands import FollowTrajectory, TrackForce
 from robots.control.motion_event import MotionFinished
 from robots.model.mechanics.dynamics import ArmDynamics
 from robots.model.mechanics.kinematics import ArmKinematics
@@ -29,7 +30,6 @@ from robots.motion.speed_profile import MIN_JERK, plan_approach
 from robots.motion.touch_speed import effective_mass_kg, friction_push_n, touch_speed_m_s
 from robots.port import Array, ContactCondition, ForceTask, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
-from robots.sim.commands.arm_commands import FollowTrajectory, TrackForce
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 

@@ -18,6 +18,7 @@ from engine.document import RealismName
 from engine.messages import Pose
 from engine.skills.arm_control import ControlSettings
 from engine.skills.dmp import Compliance
+from robots.control.commanding.arm_commands import ConfigureArm, FollowTrajectory, TrackForce
 from robots.control.motion_event import MotionFinished
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform, quaternion_of
@@ -34,7 +35,6 @@ from robots.port import (
     Tolerance,
 )
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
-from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory, TrackForce
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell
 

@@ -188,13 +188,13 @@ def editing(trial: Trial, page: Page, words: str, node: str) -> None:
         )
         page.keyboard.press("Control+d")
         times.append(page.evaluate("() => probe.waited"))
+        idle(page)
         server.append(
             page.evaluate(
                 """() => { const all = performance.getEntriesByType('resource').filter((e) => e.name.endsWith('/edits'))
                     return all[0].responseEnd - all[0].requestStart }"""
             )
         )
-        idle(page)
         page.keyboard.press("Control+z")
         expect(page.locator(f".react-flow__node[data-id='{node}_2']")).to_have_count(0, timeout=_LIMIT_MS)
         idle(page)

@@ -25,9 +25,9 @@ from benchmarks.swinging_arms import CELL, Swinging, swing_for_ever
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, PartPoses, Pose
 from engine.skills.arm_control import ControllerName, ControlSettings
+from robots.control.commanding.arm_commands import ConfigureArm
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import PartBody, SimScene
-from robots.sim.commands.arm_commands import ConfigureArm
 from robots.sim.host.loop_timing import LoopTiming
 from robots.sim.host.process_host import ProcessHost
 from robots.sim.loop.simulation import Simulation

@@ -12,8 +12,8 @@ import numpy as np
 
 from benchmarks.swinging_arms import Swinging
 from engine.skills.arm_control import ControllerName, ControlSettings
+from robots.control.commanding.arm_commands import ConfigureArm
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.arm_commands import ConfigureArm
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.simulation import Simulation
 from robots.sim.physics.cell_model import build_cell

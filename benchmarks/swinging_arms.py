@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from robots.control.commanding.arm_commands import FollowTrajectory
 from robots.control.motion_event import MotionFinished
 from robots.model.registry import model_by_name
 from robots.port import Array, JointTrajectory, MotionEnd, Tolerance
-from robots.sim.commands.arm_commands import FollowTrajectory
 from robots.sim.loop.simulation import Simulation
 from robots.sim.world.sim_world import SimWorld
 
