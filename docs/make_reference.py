@@ -17,13 +17,20 @@ from engine.cli.commands.states import default_text, description, type_text
 from engine.cli.main import app
 from engine.document import KeySignature, StateSignature, read_signature
 from engine.registry import load_states
+from robots.reconcell.packet_table import port_table
 
 FOLDER = Path(__file__).parent / "reference"
 
 
 def pages() -> dict[str, str]:
     """Return the text of every page by file name."""
-    return {"cli.md": _commands(), "states.md": _states(), "findings.md": _findings(), "python.md": _python()}
+    return {
+        "cli.md": _commands(),
+        "states.md": _states(),
+        "findings.md": _findings(),
+        "python.md": _python(),
+        "reconcell-ports.md": _reconcell_ports(),
+    }
 
 
 def _commands() -> str:
@@ -101,6 +108,13 @@ def _python() -> str:
         if members:
             lines += ["| member | meaning |", "|---|---|", *members, ""]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _reconcell_ports() -> str:
+    lines = ["# Ports of the ReconCell interface", "", "Generated from the code by `docs/make_reference.py`.", ""]
+    how = "[serve the ReconCell interface](../how-to/serve-the-reconcell-interface.md)"
+    lines += [f"Doubles and bytes without gaps, little-endian. How to use them: {how}.", ""]
+    return "\n".join(lines) + "\n" + port_table()
 
 
 def _fields(kind: Any) -> tuple[str, ...]:

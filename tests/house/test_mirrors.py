@@ -25,6 +25,7 @@ NOT_MIRRORS: Mapping[str, str] = {
     "TagsBody": "a change of tags; a row of the store has the key of the entry too",
     "TaughtReference": "names an entry or a capture; a row of the store has the key of the entry too",
     "TimelineMarker": "a mark on the timeline for many kinds of events",
+    "UserdataBody": "a value that a person reads or sets; the event of a write has its writer, number and time",
 }
 """Classes of the server that share names with a class of the engine, and why they are not that class."""
 NOT_REPEATED: Mapping[str, str] = {

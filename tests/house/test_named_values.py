@@ -24,9 +24,13 @@ NAMELESS = frozenset(
         "bus.CheckMessage.condition",
         "bus.WaitForMessage.condition",
         "motion.IdentifyFriction.joints[]",
+        "calibration.FourPointTool.poses[].frame",
+        "calibration.ThreePointFrame.points[].frame",
     )
 )
-"""What is written for people, expressions over a message, and joints, which depend on the model of the robot."""
+"""What is written for people, expressions over a message, joints, which depend on the model of the robot, and frames of
+poses that a state has measured.
+"""
 
 
 def _texts(schema: Schema, definitions: Mapping[str, Schema], at: str, says: frozenset[str]) -> Iterator[str]:

@@ -97,6 +97,9 @@ def test_the_wheel_has_no_other_files_of_others() -> None:
         ".js",
         ".css",
         ".svg",
+        ".ino",
+        ".script",
+        ".mod",
         ".woff2",
         "",
     }
