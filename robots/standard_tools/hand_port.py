@@ -7,6 +7,8 @@ from robots.port import HandSample
 from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.ports.tool_ports import ToolLine
 
+_AT_ONCE_S = 1e-3
+
 
 class SimHandPort:
     """Implements `robots.port.HandPort` for a hand of a simulated world."""
@@ -34,6 +36,17 @@ class SimHandPort:
         line.require("share", share, above_zero=False)
         line.require("time_s", time_s, above_zero=True)
         return line.start(number, (share, time_s))
+
+    def follow(self, *, share: float) -> CommandedMotion:
+        """Close or open to `share` as fast as the motor can; a motion that is active goes there instead.
+
+        This is how the firmware of a hand follows a reference that moves.
+
+        Raises:
+            RobotError: the value is invalid, or the world is lost.
+        """
+        self._line.require("share", share, above_zero=False)
+        return self._line.lead((share, _AT_ONCE_S))
 
 
 def hand_sample(reading: ToolReading) -> HandSample:

@@ -16,9 +16,14 @@ class ExclusiveMotion:
         self._board = board
         self._motion: CommandedMotion | None = None
 
+    @property
+    def active(self) -> CommandedMotion | None:
+        """The motion that has not ended; None without one."""
+        return self._motion if self._motion is not None and not self._motion.ended else None
+
     def number(self) -> int:
         """Return the number for the next motion; raises RobotError while one is active."""
-        if self._motion is not None and not self._motion.ended:
+        if self.active is not None:
             raise RobotError(
                 "another motion is active", where=self._device, hint="wait for its report, or cancel it first"
             )

@@ -48,7 +48,11 @@ def new_abb_irc5(
         about=about_driver(options, name=name),
         engine_silence_s=engine_silence_s,
         capture=capture,
-        rws=RwsMonitor(name, options.host, rws, password=rws.secret(name)) if rws is not None else None,
+        rws=(
+            RwsMonitor(name, options.host, rws, password=rws.secret(name), tap=capture.tap("rws"))
+            if rws is not None
+            else None
+        ),
     )
 
 

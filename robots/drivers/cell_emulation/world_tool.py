@@ -6,10 +6,12 @@ import asyncio
 from typing import Protocol, cast
 
 from engine.errors import CellError
-from robots.drivers.emulation.plant import ToolMeasurement
+from robots.control.commanding.motion_registry import CommandedMotion
+from robots.drivers.emulation.plant import ToolMeasurement, ToolPlant
 from robots.port import GripperPort, Motion
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.world.sim_world import SimWorld
+from robots.standard_tools.hand_port import SimHandPort
 
 # Closer to its target the tool is there.
 _THERE_SHARE = 0.03
@@ -116,11 +118,48 @@ class WorldTool:
             await self._motion.report()
 
 
-def world_tool(world: SimWorld, arm: str, tool: ToolSummary) -> WorldTool:
+class WorldHand:
+    """Implements `ToolPlant` for a hand with one motor, which follows a reference while that moves."""
+
+    def __init__(self, port: SimHandPort) -> None:
+        self._port = port
+        self._motion: CommandedMotion | None = None
+        self._goal_share = 0.0
+
+    def close_to(self, closed_share: float, *, speed_share: float = 1.0, force_share: float = 1.0) -> None:
+        """Move there from now on, as fast as the motor can, also in mid-motion."""
+        self._goal_share = closed_share
+        self._motion = self._port.follow(share=closed_share)
+
+    def stop(self) -> None:
+        """Wind no further; the tendon keeps its pull."""
+        if self._motion is not None:
+            self._motion.cancel()
+        self._goal_share = self._port.sample().closed_share
+
+    def home(self) -> None:
+        """Open."""
+        self.close_to(0.0)
+
+    def measured(self) -> ToolMeasurement:
+        """Return the wound-up share, and the pull on what is in the hand."""
+        sample, motion = self._port.sample(), self._motion
+        moving = motion is not None and not motion.ended
+        return ToolMeasurement(
+            closed_share=sample.closed_share,
+            moving=moving,
+            blocked=not moving and abs(sample.closed_share - self._goal_share) > _THERE_SHARE,
+            force_share=sample.force_n / self._port.max_force_n,
+        )
+
+
+def world_tool(world: SimWorld, arm: str, tool: ToolSummary) -> ToolPlant:
     """Return the tool on an arm of a world; raises CellError for one that cannot be moved from outside yet."""
     port = world.tool(arm, tool.kind)
     if tool.kind == "gripper":
         return WorldTool(_Fingers(cast("GripperPort", port), tool))
+    if isinstance(port, SimHandPort):
+        return WorldHand(port)
     if hasattr(port, "switch"):
         return WorldTool(_Switch(cast("_SwitchedPort", port)))
     hint = "emulate it alone: `flexcell emulate`, without the world"

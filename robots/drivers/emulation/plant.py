@@ -15,11 +15,15 @@ from robots.port import Array
 
 @dataclass(frozen=True, kw_only=True)
 class ToolMeasurement:
-    """A measured tool: 0 open to 1 closed, whether it moves, and whether something keeps it from its target."""
+    """A measured tool: 0 open to 1 closed, whether it moves, and whether something keeps it from its target.
+
+    `force_share` is the force beyond that for closing equally far on nothing, of the greatest; 0 if it is not measured.
+    """
 
     closed_share: float
     moving: bool
     blocked: bool
+    force_share: float = 0.0
 
 
 class ArmPlant(Protocol):

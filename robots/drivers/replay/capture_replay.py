@@ -145,14 +145,19 @@ class CaptureReplay:
 def _openings(events: Sequence[CapturedEvent], rule: RequestRule) -> list[list[RecordedExchange]]:
     """Return the exchanges of each opening; one that began before the capture counts too."""
     openings: list[list[RecordedExchange]] = []
-    echo = b""
-    for event in events:
+    echo = begun = b""
+    following = [each.kind for each in events[1:]] + [""]
+    for event, next_kind in zip(events, following, strict=True):
         if event.kind == "opened" or not openings:
             openings.append([RecordedExchange(request=b"", offset=event.offset, at_s=event.time_s)])
         exchanges = openings[-1]
         match event.kind:
             case "sent":
-                for request in rule.split(event.data):
+                requests = rule.split(begun + event.data)
+                begun = b""
+                if next_kind == "sent" and requests and not rule.length(requests[-1]):
+                    begun = requests.pop()  # sent in pieces
+                for request in requests:
                     exchanges.append(RecordedExchange(request=request, offset=event.offset, at_s=event.time_s))
                     if rule.echo is not None and rule.kind(request) is RequestKind.SET_POINT:
                         echo = rule.echo(request)

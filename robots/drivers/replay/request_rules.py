@@ -149,6 +149,25 @@ def _without_session(program: bytes) -> bytes:
     return re.sub(rb"session = \d+", b"session", program)
 
 
+def _http_length(data: bytes) -> int:
+    head, end, _ = data.partition(b"\r\n\r\n")
+    if not end:
+        return 0
+    found = _CONTENT_LENGTH.search(head)
+    size = len(head) + len(end) + (int(found[1]) if found is not None else 0)
+    return size if len(data) >= size else 0
+
+
+def _http_kind(request: bytes) -> RequestKind:
+    return RequestKind.POLL if request.startswith(b"GET ") else RequestKind.COMMAND
+
+
+def _without_headers(request: bytes) -> bytes:
+    head, _, body = request.partition(b"\r\n\r\n")
+    return head.partition(b"\r\n")[0] + b"\n" + body
+
+
+_CONTENT_LENGTH = re.compile(rb"(?i)\r\ncontent-length: *(\d{1,9})")
 _PROGRAMS = RequestRule(length=_program_length, compared=_without_session)
 _LINES = RequestRule(length=_line_length)
 _MODBUS_RTU = RequestRule(length=_modbus_rtu_length, kind=lambda request: _modbus_kind(request[1]))
@@ -166,6 +185,9 @@ REQUEST_RULES: Mapping[str, RequestRule] = {
     "simple_message_state": RequestRule(length=_message_length),
     "simple_message_motion": RequestRule(length=_message_length),
     "gripper_text": RequestRule(),
+    # Of headers, address, credentials and cookies are others in each session.
+    "rws": RequestRule(length=_http_length, kind=_http_kind, compared=_without_headers),
+    "rws_stop": RequestRule(length=_http_length, kind=_http_kind, compared=_without_headers),
     "ur_dashboard": _LINES,
     "ur_secondary": _PROGRAMS,
     "ur_script": _PROGRAMS,

@@ -16,6 +16,7 @@ from robots.drivers.emulation.side_channel import Request, SideChannel
 from robots.drivers.emulation.wire_faults import WireFaults
 from robots.drivers.replay.capture_replay import CaptureReplay, RecordedReply, ReplayMismatch
 from robots.drivers.replay.datagram_replay import DatagramReplay
+from robots.drivers.replay.egm_replay import EgmReplay
 from robots.drivers.replay.hand_states import HandStateReplay
 from robots.drivers.replay.replay_emulator import ReplayOptions
 from robots.drivers.replay.request_rules import NOT_REPLAYED, REQUEST_RULES, STRICT
@@ -160,7 +161,8 @@ async def _serve_datagrams(captured: CapturedConnection, options: ReplayOptions,
             where=options.file,
             hint="name who receives them, for a client on this machine: receiver=127.0.0.1",
         )
-    replay = DatagramReplay(captured, host=options.host, receiver=options.receiver, pace=options.pace)
+    new_replay = EgmReplay if captured.protocol == "egm" else DatagramReplay
+    replay = new_replay(captured, host=options.host, receiver=options.receiver, pace=options.pace)
 
     async def execute(request: Request) -> Mapping[str, object]:
         if request["do"] != "state":

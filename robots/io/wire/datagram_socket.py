@@ -50,11 +50,15 @@ class DatagramSocket:
 
     def receive(self, most: int) -> bytes:
         """Return the next datagram."""
+        return self.receive_from(most)[0]
+
+    def receive_from(self, most: int) -> tuple[bytes, Address]:
+        """Return the next datagram, and who sent it."""
         data, sender = self._socket.recvfrom(most)
         if self._tap.is_active:
             ends = WireEndpoints(local=address_of(self._socket.getsockname()), remote=address_of(sender))
             self._tap.received(data, ends)
-        return data
+        return data, address_of(sender)
 
     def close(self) -> None:
         """Close it."""

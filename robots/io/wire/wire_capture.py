@@ -23,6 +23,11 @@ class WireCapture:
         self._limits = limits
         self._files: list[CaptureFile] = []
 
+    @property
+    def folder(self) -> Path | None:
+        """Where the files are; None where nothing is captured."""
+        return self._folder
+
     def tap(self, protocol: str) -> WireTap:
         """Return the tap of one connection, whose protocol no other connection of the device has."""
         if self._folder is None:

@@ -43,6 +43,14 @@ class ToolLine:
         command = MoveTool(arm=arm, motion=number, goal=goal)
         return self._one.start(motion, partial(host.send, command))
 
+    def lead(self, goal: tuple[float, ...]) -> CommandedMotion:
+        """Send the active motion to another goal, under its number, or start one."""
+        active = self._one.active
+        if active is None:
+            return self.start(self.number(), goal)
+        self.host.send(MoveTool(arm=self.arm, motion=active.number, goal=goal))
+        return active
+
     def require(self, what: str, value: float, *, above_zero: bool) -> None:
         """Raise RobotError unless `value` is finite and at least 0, or above 0 with `above_zero`."""
         if not math.isfinite(value) or value < 0.0 or (above_zero and value == 0.0):

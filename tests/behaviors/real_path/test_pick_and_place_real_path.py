@@ -20,7 +20,7 @@ world: {kind: mujoco}
 robots:
   arm: {model: %s}
 """
-HAND = 'panda, gripper: {model: softhand, driver: {kind: softhand, device: "socket://127.0.0.1:1"}}'
+HAND = "panda, gripper: {model: softhand, driver: {kind: softhand, device: /dev/ttyUSB0}}"
 MIXED = (
     "fr3, driver: {kind: franka, host: 127.0.0.3}}\n  other: {model: ur10, driver: {kind: universal_robots, host: x}"
 )
@@ -56,7 +56,7 @@ def test_the_same_documents_run_with_everything_simulated(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("arm", "reason"),
     [
-        (HAND, "a device of kind softhand cannot be part of an emulated cell"),
+        (HAND, "an emulated hand cannot be at /dev/ttyUSB0"),
         (BOARD, "an emulated board cannot be at /dev/ttyACM0"),
         (MIXED, "a Franka cannot be in one emulated cell with universal_robots"),
         (APART, "the hand of arm is at 127.0.0.4, its arm is not"),

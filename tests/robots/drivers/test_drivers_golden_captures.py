@@ -52,6 +52,49 @@ def point(sequence: str, first_axis: str, duration: str) -> bytes:
     return h("40000000 0B000000 02000000 00000000" + sequence + joints + zeros(4) + duration)
 
 
+_DEGREES = {
+    "0": "0000000000000000", "0.25": "000000000000D03F", "0.5": "000000000000E03F", "-0.5": "000000000000E0BF",
+    "30": "0000000000003E40",
+}  # fmt: skip
+
+
+def joints(*degrees: str) -> bytes:
+    """Return the message EgmJoints of egm.proto within its parent: length 54, field 1, and 6 doubles, field 1 each."""
+    return h("38 0A 36" + "".join("09" + _DEGREES[each] for each in degrees))
+
+
+_HELD = ("0", "0.5", "-0.5", "0", "30", "0")
+
+
+def asked(first: str, *, session: bool = True, body: str = "") -> tuple[str, bytes]:
+    """Return an HTTP request as it is captured; of a session it has a cookie, whose value and digest are left out."""
+    lines = [f"{first} HTTP/1.1", "Host: 192.0.2.20", "Accept: */*", "Accept-Encoding: gzip, deflate, zstd"]
+    lines += ["Connection: keep-alive", "User-Agent: python-httpx/0.28.1"]
+    lines += ["Cookie: (not captured)"] if session else []
+    lines += [f"Content-Length: {len(body)}", "Content-Type: application/x-www-form-urlencoded"] if body else []
+    lines += ["Authorization: (not captured)"] if session else []
+    return ">", ("\r\n".join([*lines, "", ""]) + body).encode()
+
+
+def answered(states: str) -> tuple[str, bytes]:
+    """Return the HTTP answer with the states of a resource, in the JSON of Robot Web Services 1.0."""
+    body = f'{{"_links":{{}},"_embedded":{{"_state":[{states}]}}}}'
+    return "<", http("200 OK", len(body), "Set-Cookie: (not captured)") + body.encode()
+
+
+def http(status: str, length: int, *more: str) -> bytes:
+    """Return the head of an HTTP answer."""
+    lines = [f"HTTP/1.1 {status}", "Content-Type: application/json", f"Content-Length: {length}", *more, "", ""]
+    return "\r\n".join(lines).encode()
+
+
+_EVENT = (
+    '{"_type":"elog-message-li","_title":"/rw/elog/0/%s","msgtype":"1","code":"%s","src-name":"MC0",'
+    '"tstamp":"2026-01-01 T  12:00:00","argc":"0","title":"%s","desc":"%s","conseqs":"","causes":"","actions":""}'
+)
+_CHALLENGE = f'Digest realm="validusers@robapi.abb", qop="auth", nonce="{"0" * 32}", algorithm=MD5'
+_FIRST = asked("GET /rw/rapid/execution?json=1")[1].replace(b"Cookie: (not captured)\r\n", b"")
+
 GOLDEN: dict[str, list[tuple[str, bytes]]] = {
     "modbus_rtu": _RTU,
     "rtu_over_tcp": _RTU,
@@ -63,6 +106,46 @@ GOLDEN: dict[str, list[tuple[str, bytes]]] = {
         ("<", h("0002 0000 0006 09 10 0000 0003")),
         (">", h("0003 0000 000D 09 10 0000 0003 06 0900 00FF FFFF")),
         ("<", h("0003 0000 0006 09 10 0000 0003")),
+    ],
+    # The first request has no digest yet, and the second no cookie.
+    "rws": [
+        asked("GET /rw/rapid/execution?json=1", session=False),
+        ("<", http("401 Unauthorized", 0, f"WWW-Authenticate: {_CHALLENGE}")),
+        (">", _FIRST),
+        answered('{"_type":"rap-execution","ctrlexecstate":"running","cycle":"forever"}'),
+        asked("GET /rw/panel/ctrlstate?json=1"),
+        answered('{"_type":"pnl-ctrlstate","ctrlstate":"motoron"}'),
+        asked("GET /rw/panel/opmode?json=1"),
+        answered('{"_type":"pnl-opmode","opmode":"AUTO"}'),
+        asked("GET /ctrl/identity?json=1"),
+        answered(
+            '{"_type":"ctrl-identity-info","ctrl-name":"IRC5_EMULATED","ctrl-id":"4600-501234",'
+            '"ctrl-type":"Virtual Controller"}'
+        ),
+        asked("GET /rw/system?json=1"),
+        answered('{"_type":"sys-system","name":"emulated","rwversion":"6.15.0000"}'),
+        asked("GET /rw/elog/0?lang=en&json=1"),
+        answered(
+            _EVENT % (2, 10011, "State motoron", "State motoron")
+            + ","
+            + _EVENT % (1, 10010, "Motors OFF state", "Motors OFF state")
+        ),
+        asked("GET /rw/panel/speedratio?json=1"),
+        answered('{"_type":"pnl-speedratio","speedratio":"100"}'),
+        asked("POST /rw/panel/ctrlstate?action=setctrlstate&json=1", body="ctrl-state=motoron"),
+        ("<", http("204 No Content", 0)),
+        asked("GET /logout"),
+        ("<", http("200 OK", 0, "Set-Cookie: (not captured)")),
+    ],
+    # EgmRobot: header of 7 bytes with number 7, time 1000 and DATA 2; feedBack, planned; motors ON 1, MCI RUNNING 3,
+    # RAPID RUNNING 2. EgmSensor: header with number 1, time 2000 and CORRECTION 3; planned. The first axis to 0.25.
+    "egm": [
+        (
+            "<",
+            h("0A 07 08 07 10 E807 18 02 12") + joints(*_HELD) + h("1A") + joints(*_HELD)
+            + h("22 02 08 01 2A 02 08 03 42 02 08 02"),
+        ),
+        (">", h("0A 07 08 01 10 D00F 18 03 12") + joints("0.25", *_HELD[1:])),
     ],
     # One variable a line; `ack` has no line end.
     "urcap": [

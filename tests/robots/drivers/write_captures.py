@@ -7,6 +7,8 @@ with bytes that were written by hand; addresses and times are replaced by those 
 from __future__ import annotations
 
 import asyncio
+import dataclasses
+import re
 import socket
 import subprocess
 import sys
@@ -19,9 +21,23 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from robots.drivers.abb.abb_faults import AbbLinkError
 from robots.drivers.abb.abb_options import GripperStrings
+from robots.drivers.abb.egm.egm_messages import (
+    EgmMeasurement,
+    MciState,
+    MotorState,
+    RapidState,
+    decode_set_point,
+    encode_measurement,
+    encode_set_point,
+)
+from robots.drivers.abb.egm.egm_socket import EgmSocket
 from robots.drivers.abb.gripper_switch import GripperSwitch
 from robots.drivers.abb.motion_link import MotionLink
+from robots.drivers.abb.rws.rws_client import RwsClient
+from robots.drivers.abb.rws.rws_options import RwsOptions
+from robots.drivers.abb.rws.rws_transport import RwsCommand, RwsTransport
 from robots.drivers.abb.simple_message import JOINTS, TrajectoryPoint
 from robots.drivers.abb.state_transport import StateTransport
 from robots.drivers.robotiq.gripper_registers import ACTIVATE, GripperCommand
@@ -167,6 +183,59 @@ def gripper_text(tap: WireTap) -> None:
         asyncio.run(switch(emulator.place["host"], emulator.place["gripper_port"]))
 
 
+def rws(tap: WireTap) -> None:
+    """Read the state, which asks for a password, and switch the motors on."""
+    with emulated_irc5() as emulator:
+        place = emulator.place
+
+        def new_client() -> RwsClient:
+            user, password = "Default User", RwsOptions().secret("an example")
+            return RwsClient(place["host"], place["rws_port"], user=user, password=password, timeout_s=5.0, tap=tap)
+
+        transport = RwsTransport("an example", new_client)
+        transport.open()
+        transport.read()
+        transport.write(RwsCommand.MOTORS_ON)
+        transport.close()
+
+
+def egm(tap: WireTap) -> None:
+    """Receive a measurement, and answer with a set point."""
+    own = own_address()
+    socket_here = EgmSocket(own, address=own, port=6510, tap=tap)
+    socket_here.open()
+    controller = DatagramSocket(NO_TAP)
+    controller.bind((own, 0))
+    measurement = EgmMeasurement(
+        number=7,
+        time_ms=1000,
+        measured_deg=(0.0, 0.5, -0.5, 0.0, 30.0, 0.0),
+        planned_deg=(0.0, 0.5, -0.5, 0.0, 30.0, 0.0),
+        motors=MotorState.ON,
+        mci=MciState.RUNNING,
+        rapid=RapidState.RUNNING,
+    )
+    controller.send(encode_measurement(measurement), (own, 6510))
+    socket_here.receive(5.0)
+    socket_here.send((0.25, 0.5, -0.5, 0.0, 30.0, 0.0))
+    controller.close()
+    socket_here.close()
+
+
+def _without_session(data: bytes) -> bytes:
+    """Replace address and nonce in HTTP."""
+    data = re.sub(rb"Host: [\d.:]+", b"Host: 192.0.2.20", data)
+    return re.sub(rb'nonce="\w+"', b'nonce="' + b"0" * 32 + b'"', data)
+
+
+def _without_time(packet: bytes) -> bytes:
+    """Replace the time in a set point; a measurement has an example's already."""
+    try:
+        return encode_set_point(dataclasses.replace(decode_set_point(packet), time_ms=2000))
+    except AbbLinkError:
+        return packet
+
+
 def ur_dashboard(tap: WireTap) -> None:
     """Ask for the safety status."""
     with EmulatedController(series="cb3") as controller:
@@ -228,12 +297,16 @@ SESSIONS: dict[str, tuple[int, int, _Session]] = {
     "simple_message_state": (11002, 99, lambda capture: simple_message_state(capture.tap("simple_message_state"))),
     "simple_message_motion": (11000, 99, lambda capture: simple_message_motion(capture.tap("simple_message_motion"))),
     "gripper_text": (11004, 99, lambda capture: gripper_text(capture.tap("gripper_text"))),
+    "rws": (80, 99, lambda capture: rws(capture.tap("rws"))),
+    "egm": (0, 99, lambda capture: egm(capture.tap("egm"))),
     "ur_dashboard": (29999, 99, lambda capture: ur_dashboard(capture.tap("ur_dashboard"))),
     "ur_secondary": (30002, 99, ur_secondary),
     "rtde": (30004, 12, lambda capture: rtde(capture.tap("rtde"))),
     "reconcell": (0, 99, reconcell),
 }
 """By protocol: the usual port of the device, the most events kept, and what is done."""
+_REPLACED: dict[str, Callable[[bytes], bytes]] = {"rws": _without_session, "egm": _without_time}
+"""By protocol, what differs from session to session inside of the bytes, and is that of an example."""
 
 
 def write(protocol: str) -> None:
@@ -252,7 +325,8 @@ def write(protocol: str) -> None:
     ]
     for number, event in enumerate(captured.events[:most]):
         time_ns = _EPOCH_NS + number * 10_000_000
-        noted = WireEvent(time_ns=time_ns, kind=event.kind, data=event.data, endpoints=_example(event, port))
+        data = _REPLACED.get(protocol, bytes)(event.data)
+        noted = WireEvent(time_ns=time_ns, kind=event.kind, data=data, endpoints=_example(event, port))
         blocks += [encode_block(packet) for packet in encoder.packets(noted, time_ns=time_ns)]
     (FOLDER / f"{protocol}.pcapng").write_bytes(b"".join(blocks))
 

@@ -36,9 +36,8 @@ class EgmProcessOptions(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def new_egm_controller(options: bytes, capture: WireCapture = NO_CAPTURE) -> EgmController:
-    """Return the controller of encoded options, not yet connected; datagrams are not captured."""
-    del capture
-    return EgmController(msgspec.json.decode(options, type=EgmProcessOptions))
+    """Return the controller of encoded options, not yet connected."""
+    return EgmController(msgspec.json.decode(options, type=EgmProcessOptions), capture)
 
 
 class EgmController:
@@ -48,7 +47,7 @@ class EgmController:
     `CommTimeout` ends guided motion at rest, and its program starts it again, at rest.
     """
 
-    def __init__(self, options: EgmProcessOptions) -> None:
+    def __init__(self, options: EgmProcessOptions, capture: WireCapture = NO_CAPTURE) -> None:
         self._options = options.egm
         axes = len(options.offset_rad)
         self._map = JointMap(
@@ -57,7 +56,9 @@ class EgmController:
             lower_rad=(-math.inf,) * axes,
             upper_rad=(math.inf,) * axes,
         )
-        self._socket = EgmSocket(options.host, address=options.egm.address, port=options.egm.port)
+        self._socket = EgmSocket(
+            options.host, address=options.egm.address, port=options.egm.port, tap=capture.tap("egm")
+        )
         self._host = options.host
         self._last: EgmMeasurement | None = None
         self._time_s = 0.0

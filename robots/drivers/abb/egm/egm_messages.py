@@ -123,6 +123,18 @@ def decode_measurement(packet: bytes) -> EgmMeasurement:
         raise _garbage(str(error)) from error
 
 
+def renumber_measurement(packet: bytes, *, by: int, time_ms: int) -> bytes:
+    """Return the packet of a measurement so many messages and milliseconds later; the rest of it stays as it is.
+
+    Raises:
+        AbbLinkError: it is no measurement.
+    """
+    measurement = decode_measurement(packet)
+    numbers = (measurement.number + by, measurement.time_ms + time_ms)
+    # Of a field that comes twice the last one counts.
+    return packet + _message(1, _header(*numbers, MessageKind.DATA))
+
+
 def encode_set_point(set_point: EgmSetPoint) -> bytes:
     """Return the packet of a set point; raises ValueError for values that are not finite."""
     if len(set_point.planned_deg) != AXES or not all(map(math.isfinite, set_point.planned_deg)):

@@ -9,6 +9,8 @@ from contextlib import suppress
 
 from robots.drivers.abb.abb_faults import AbbFault, AbbLinkError
 from robots.drivers.abb.egm.egm_messages import EgmMeasurement, EgmSetPoint, decode_measurement, encode_set_point
+from robots.io.wire.datagram_socket import DatagramSocket
+from robots.io.wire.wire_tap import NO_TAP, Address, WireTap
 
 _MOST_BYTES = 4096
 _LATE = 250
@@ -23,14 +25,16 @@ class EgmSocket:
         controller: Address of the controller; packets of others are ignored.
         address: Of this computer to listen on; empty for any.
         port: UDP port here.
+        tap: Notes its datagrams, those of others too.
     """
 
-    def __init__(self, controller: str, *, address: str, port: int) -> None:
+    def __init__(self, controller: str, *, address: str, port: int, tap: WireTap = NO_TAP) -> None:
         self._controller = controller
         self._place = (address, port)
-        self._socket: socket.socket | None = None
+        self._tap = tap
+        self._socket: DatagramSocket | None = None
         self._sources: frozenset[str] = frozenset()
-        self._sender: tuple[str, int] | None = None
+        self._sender: Address | None = None
         self._number: int | None = None
         self._sent = 0
         self.late = 0
@@ -49,9 +53,9 @@ class EgmSocket:
             self._sources = frozenset(
                 str(found[4][0]) for found in socket.getaddrinfo(self._controller, None, socket.AF_INET)
             )
-            self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self._socket = DatagramSocket(self._tap)
             self._socket.bind(self._place)
-            self._socket.setblocking(False)
+            self._socket.never_wait()
         except OSError as error:
             self.close()
             raise AbbLinkError(
@@ -83,7 +87,7 @@ class EgmSocket:
         if self._sender is None:
             raise AbbLinkError(AbbFault.SILENT, "the controller has sent nothing yet")
         try:
-            self._opened().sendto(packet, self._sender)
+            self._opened().send(packet, self._sender)
         except BlockingIOError:
             pass  # this one is lost, as on the wire
         except OSError as error:
@@ -95,14 +99,14 @@ class EgmSocket:
         with suppress(BlockingIOError):
             while True:
                 try:
-                    packet, sender = self._opened().recvfrom(_MOST_BYTES)
+                    packet, sender = self._opened().receive_from(_MOST_BYTES)
                 except ConnectionRefusedError:
                     continue
                 if sender[0] in self._sources:
-                    latest = self._take(packet, (str(sender[0]), int(sender[1]))) or latest
+                    latest = self._take(packet, sender) or latest
         return latest
 
-    def _take(self, packet: bytes, sender: tuple[str, int]) -> EgmMeasurement | None:
+    def _take(self, packet: bytes, sender: Address) -> EgmMeasurement | None:
         try:
             measurement = decode_measurement(packet)
         except AbbLinkError as error:
@@ -116,7 +120,7 @@ class EgmSocket:
         self._number, self._sender = measurement.number, sender
         return measurement
 
-    def _opened(self) -> socket.socket:
+    def _opened(self) -> DatagramSocket:
         if self._socket is None:
             raise AbbLinkError(AbbFault.LINK_CUT, "not listening")
         return self._socket

@@ -21,6 +21,7 @@ from robots.drivers.abb.rws.rws_transport import EXECUTION
 from robots.drivers.arm.arm_process_messages import OpenController
 from robots.drivers.arm.process_arm_connection import NewStopLine, ProcessArmConnection
 from robots.io.wire.wire_capture import NO_CAPTURE, WireCapture
+from robots.io.wire.wire_tap import NO_TAP
 from robots.port.heartbeat import ENGINE_SILENCE_S
 from robots.scene.sim_scene import ArmPlacement
 
@@ -51,13 +52,19 @@ def new_egm_arm(
             hint="external axes are not driven",
         )
     rws, password = options.rws, options.rws.secret(name) if options.rws is not None else ""
+    stop_tap = capture.tap("rws_stop") if rws is not None else NO_TAP
 
     def stop_program() -> None:
         """Stop RAPID where the process of an arm that may move is lost; its CommTimeout stops it too."""
         if rws is None:
             return
         client = RwsClient(
-            rws.host or options.host, rws.port, user=rws.user, password=password, timeout_s=min(1.0, rws.timeout_s)
+            rws.host or options.host,
+            rws.port,
+            user=rws.user,
+            password=password,
+            timeout_s=min(1.0, rws.timeout_s),
+            tap=stop_tap,
         )
         with suppress(AbbLinkError, RwsRefused):
             client.post(EXECUTION, "stop", {"stopmode": "stop"})
@@ -73,6 +80,7 @@ def new_egm_arm(
             options=msgspec.json.encode(given),
             stale_s=egm.stale_s,
             engine_silence_s=engine_silence_s,
+            capture=str(capture.folder) if capture.folder is not None else "",
         ),
         model=model,
         address=f"{options.host}, UDP port {egm.port}",
@@ -86,7 +94,9 @@ def new_egm_arm(
     return EgmArmConnection(
         name,
         process,
-        rws=RwsMonitor(name, options.host, rws, password=password) if rws is not None else None,
+        rws=(
+            RwsMonitor(name, options.host, rws, password=password, tap=capture.tap("rws")) if rws is not None else None
+        ),
         switch=(
             GripperSwitch(options.host, gripper, timeout_s=options.timeout_s, tap=capture.tap("gripper_text"))
             if gripper is not None

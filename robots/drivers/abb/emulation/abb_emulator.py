@@ -7,12 +7,15 @@ from typing import Annotated
 from msgspec import Meta
 
 from engine.cell.drivers import Emulator, EmulatorOptions
-from engine.errors import CellError
 from robots.drivers.abb.abb_options import AbbOptions
 from robots.drivers.abb.rws.rws_options import RwsOptions
 from robots.drivers.abb.simple_message import ByteOrder
 
 Port = Annotated[int, Meta(ge=0, le=65535, description="TCP port; 0 for a free one")]
+
+COMM_TIMEOUT_S = 0.2
+# A driver that listens on any address of this computer also hears what is sent to this one.
+_ANY_ADDRESS = "127.0.0.1"
 
 
 class AbbEmulatorOptions(EmulatorOptions, frozen=True, kw_only=True):
@@ -27,7 +30,9 @@ class AbbEmulatorOptions(EmulatorOptions, frozen=True, kw_only=True):
     # The documented one of the user that every controller has.
     rws_password: Annotated[str, Meta(description="Its password")] = "robotics"  # noqa: S105
     egm_client: Annotated[str, Meta(description="HOST:PORT to which EGM sends; empty for no EGM")] = ""
-    comm_timeout_s: Annotated[float, Meta(gt=0.0, le=10.0, description="CommTimeout of the EGM program")] = 0.2
+    comm_timeout_s: Annotated[float, Meta(gt=0.0, le=10.0, description="CommTimeout of the EGM program")] = (
+        COMM_TIMEOUT_S
+    )
     side_port: Port = 0
     byte_order: Annotated[ByteOrder, Meta(description="little or big")] = "little"
     gripper_reply: Annotated[str, Meta(description="Reply to gripper texts; empty for none")] = ""
@@ -41,14 +46,12 @@ class AbbEmulatorOptions(EmulatorOptions, frozen=True, kw_only=True):
 def emulator_options(driver: AbbOptions, _model: str) -> AbbEmulatorOptions:
     """Return the options of the controller that a driver is for.
 
+    Its EGM program is as patient as the driver: in a slow world an answer may come late.
+
     Raises:
-        CellError: its option `egm`: guided motion moves no world yet; or its password is not known.
+        CellError: its password is not known.
     """
-    if driver.egm is not None:
-        raise CellError(
-            "the emulated controllers of a cell have no guided motion (`egm`)",
-            hint="leave `egm` out of this cell, or emulate the arm alone: flexcell emulate abb_irc5",
-        )
+    egm = driver.egm
     strings = driver.gripper
     reply = "ok" if strings is None or strings.reply in ("none", "any") else strings.reply
     rws = driver.rws or RwsOptions()
@@ -61,6 +64,8 @@ def emulator_options(driver: AbbOptions, _model: str) -> AbbEmulatorOptions:
         rws_port=rws.port if driver.rws is not None else 0,
         rws_user=rws.user,
         rws_password=rws.secret("rws"),
+        egm_client=f"{egm.address or _ANY_ADDRESS}:{egm.port}" if egm is not None else "",
+        comm_timeout_s=max(COMM_TIMEOUT_S, egm.stale_s) if egm is not None else COMM_TIMEOUT_S,
         gripper_reply="" if strings is None or strings.reply == "none" else reply,
     )
 

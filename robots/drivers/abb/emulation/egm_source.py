@@ -1,7 +1,8 @@
 """Externally Guided Motion of the emulated controller, with the program FlexcellEgm in its motion task.
 
 It sends a measurement 250 times a second and follows the answers. Without one for `comm_timeout_s` guided motion ends
-where the last one led, and begins again after a pause. Measurements are sent while the program is stopped too.
+where the last one led, and begins again after a pause. Measurements are sent while the program is stopped too. What is
+measured are the axes of its plant; the set points that it sends to them are what it plans.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from robots.drivers.abb.egm.egm_messages import (
 from robots.drivers.abb.egm.egm_options import PERIOD_S
 from robots.drivers.abb.emulation.controller_panel import ControllerPanel
 from robots.drivers.abb.emulation.emulated_controller import AXES, EmulatedController
+from robots.drivers.emulation.plant import PlantClock
 from robots.drivers.emulation.wire_faults import WireFaults, spoil
 from robots.port import Array
 
@@ -56,6 +58,7 @@ class EgmSource(asyncio.DatagramProtocol):
         panel: Says whether the program runs.
         faults: Of the wire of the whole controller.
         client: Where measurements are sent; None for nowhere.
+        clock: The time of the controller and of its axes.
         stop_s: Time to brake from the greatest speed.
         comm_timeout_s: As in the program.
     """
@@ -67,6 +70,7 @@ class EgmSource(asyncio.DatagramProtocol):
         faults: WireFaults,
         *,
         client: tuple[str, int] | None,
+        clock: PlantClock,
         stop_s: float,
         comm_timeout_s: float,
     ) -> None:
@@ -75,6 +79,7 @@ class EgmSource(asyncio.DatagramProtocol):
         self._faults = faults
         self.own_faults = EgmFaults(WireFaults())
         self._client = client
+        self._clock = clock
         self._stop_s = stop_s
         self._comm_timeout_s = comm_timeout_s
         self._transport: asyncio.DatagramTransport | None = None
@@ -158,27 +163,22 @@ class EgmSource(asyncio.DatagramProtocol):
         return MciState.RUNNING if runs and self._begun_s is not None else MciState.STOPPED
 
     async def _tick_forever(self) -> None:
-        loop = asyncio.get_running_loop()
-        due_s = loop.time()
+        clock = self._clock
+        due_s = clock.now_s()
         while True:
             due_s += PERIOD_S
             # A machine that is late makes up for little of it: the arm must not jump.
-            late_s = loop.time() - _MOST_LATE_TICKS * PERIOD_S - due_s
+            late_s = clock.now_s() - _MOST_LATE_TICKS * PERIOD_S - due_s
             if late_s > 0.0:
                 due_s += late_s
                 self._time_ms += round(late_s * 1e3)
-            waiting = loop.create_future()
-            timer = loop.call_at(due_s, waiting.set_result, None)
-            try:
-                await waiting
-            finally:
-                timer.cancel()
+            await clock.sleep_until(due_s)
             self._tick()
 
     def _tick(self) -> None:
-        self._controller.advance()
         self._watch()
         self._move()
+        self._controller.advance()
         self._number, self._time_ms = self._number + 1, self._time_ms + round(PERIOD_S * 1e3)
         self._send()
 
@@ -231,14 +231,14 @@ class EgmSource(asyncio.DatagramProtocol):
         self._previous = packet
 
     def _measurement(self) -> EgmMeasurement:
-        axes = self._controller.axes
-        held = self._reference if self._reference is not None else axes
+        measured = self._controller.plant.measured()[0]
+        held = self._reference if self._reference is not None else self._controller.axes
         motors = MotorState.ON if self._panel.state == "motoron" else MotorState.OFF
         rapid = RapidState.RUNNING if self._panel.execution == "running" else RapidState.STOPPED
         return EgmMeasurement(
             number=self._number,
             time_ms=self._time_ms,
-            measured_deg=tuple(np.degrees(axes).tolist()),
+            measured_deg=tuple(np.degrees(measured).tolist()),
             planned_deg=tuple(np.degrees(held).tolist()),
             motors=motors,
             mci=self._mci,

@@ -245,6 +245,7 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
         panel,
         faults,
         client=_client(options.egm_client),
+        clock=clock,
         stop_s=options.stop_s,
         comm_timeout_s=options.comm_timeout_s,
     )

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 import httpx
 
 from robots.drivers.abb.abb_faults import AbbFault, AbbLinkError
+from robots.drivers.abb.rws.captured_http import CapturedTransport
 from robots.drivers.abb.rws.rws_state import error_text
+from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 _MOST_BYTES = 1 << 20
 _UNAUTHORIZED, _UNAVAILABLE = 401, 503
@@ -26,9 +28,12 @@ class RwsClient:
         user: Who asks.
         password: Of the user.
         timeout_s: Time limit of each request.
+        tap: Notes what is sent and received, without credentials and cookies.
     """
 
-    def __init__(self, host: str, port: int, *, user: str, password: str, timeout_s: float) -> None:
+    def __init__(
+        self, host: str, port: int, *, user: str, password: str, timeout_s: float, tap: WireTap = NO_TAP
+    ) -> None:
         self._timeout_s = timeout_s
         # Proxies of the environment are not for a controller in the cell's own network.
         self._http = httpx.Client(
@@ -36,6 +41,7 @@ class RwsClient:
             auth=httpx.DigestAuth(user, password),
             timeout=timeout_s,
             trust_env=False,
+            transport=CapturedTransport(tap) if tap.is_active else None,
             follow_redirects=False,
         )
 

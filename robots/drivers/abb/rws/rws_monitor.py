@@ -17,6 +17,7 @@ from robots.drivers.abb.rws.rws_options import RwsOptions
 from robots.drivers.abb.rws.rws_state import RwsState
 from robots.drivers.abb.rws.rws_transport import RwsCommand, RwsTransport
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
+from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 _PERIOD_S = 0.5
 """Four requests each: the controller serves about twenty a second to all of its clients."""
@@ -34,15 +35,18 @@ class RwsMonitor:
         host: Of the driver.
         options: Of the service.
         password: Of the user.
+        tap: Notes what is said, without credentials.
     """
 
-    def __init__(self, name: str, host: str, options: RwsOptions, *, password: str) -> None:
+    def __init__(self, name: str, host: str, options: RwsOptions, *, password: str, tap: WireTap = NO_TAP) -> None:
         self._name = name
         self._options = options
         where = options.host or host
         self._transport = RwsTransport(
             f"{where}:{options.port}",
-            lambda: RwsClient(where, options.port, user=options.user, password=password, timeout_s=options.timeout_s),
+            lambda: RwsClient(
+                where, options.port, user=options.user, password=password, timeout_s=options.timeout_s, tap=tap
+            ),
         )
         self._changed: Callable[[], None] = lambda: None
         self._link: FreshLink[RwsState, RwsCommand] | None = None

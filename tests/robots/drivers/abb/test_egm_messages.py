@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -19,6 +20,7 @@ from robots.drivers.abb.egm.egm_messages import (
     decode_set_point,
     encode_measurement,
     encode_set_point,
+    renumber_measurement,
 )
 from tests.tiers import examples
 
@@ -54,6 +56,20 @@ def test_a_set_point_has_the_bytes_of_protobuf() -> None:
 @given(MEASUREMENTS)
 def test_a_measurement_is_read_as_it_was_written(measurement: EgmMeasurement) -> None:
     assert decode_measurement(encode_measurement(measurement)) == measurement
+
+
+@MANY
+@given(MEASUREMENTS, st.integers(0, 1000))
+def test_a_measurement_is_numbered_on_and_nothing_else_changes(measurement: EgmMeasurement, by: int) -> None:
+    packet = encode_measurement(measurement)
+    later = replace(
+        measurement,
+        number=(measurement.number + by) % 2**32,
+        time_ms=(measurement.time_ms + 4 * by) % 2**32,
+    )
+    assert decode_measurement(renumber_measurement(packet, by=by, time_ms=4 * by)) == later
+    with pytest.raises(AbbLinkError):
+        renumber_measurement(packet[:9], by=by, time_ms=0)
 
 
 @MANY

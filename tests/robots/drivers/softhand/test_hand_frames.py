@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from robots.drivers.softhand.emulation.emulated_hand import EmulatedHand
 from robots.drivers.softhand.emulation.hand_session import HandSession, HandWire
+from robots.drivers.softhand.emulation.kinematic_tendon import KinematicTendon
 from robots.drivers.softhand.hand_frames import (
     MOTORS_ON,
     ChecksumError,
@@ -41,7 +42,7 @@ GOLDEN = [
 
 
 def session(*, active: bool = True) -> tuple[HandSession, EmulatedHand]:
-    hand = EmulatedHand(lambda: 0.0, active=active)
+    hand = EmulatedHand(lambda: 0.0, KinematicTendon(lambda: 0.0), active=active)
     return HandSession(HandWire(hand, unit=1)), hand
 
 
@@ -109,13 +110,14 @@ def test_a_flipped_byte_of_a_body_is_an_error_by_name(frame: HandFrame, place: i
 @given(st.lists(st.binary(max_size=40), max_size=8))
 def test_no_bytes_crash_the_emulator_or_move_a_hand_that_is_off(chunks: list[bytes]) -> None:
     now_s = 0.0
-    hand = EmulatedHand(lambda: now_s, active=False)
+    tendon = KinematicTendon(lambda: now_s)
+    hand = EmulatedHand(lambda: now_s, tendon, active=False)
     served = HandSession(HandWire(hand, unit=1))
     for chunk in chunks:
         served.feed(chunk)
         now_s += 60.0
-    hand.advance()
-    assert hand.travel == 0.0 or hand.commands > 0
+    tendon.measured()
+    assert tendon.travel == 0.0 or hand.commands > 0
 
 
 @MANY
