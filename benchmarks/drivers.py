@@ -30,7 +30,7 @@ import numpy as np
 from benchmarks.comparison import machine
 from benchmarks.driver_arms import Subject, abb_irc5, franka, lose_link, servo_arm, simulated, universal_robots
 from benchmarks.driver_figures import POLL_S, Cycles, Figures, table, until
-from benchmarks.driver_tools import Tool, franka_hand, measure_tool, robotiq, softhand
+from benchmarks.driver_tools import TOOLS, measure_tool
 from robots.port import ArmPort, Motion
 
 _MOVES_RAD_S = 0.02
@@ -130,11 +130,6 @@ ARMS: dict[str, Callable[[], AbstractAsyncContextManager[Subject]]] = {
     "ABB IRC5": abb_irc5,
     "servo arm": servo_arm,
     "Franka FR3": franka,
-}
-TOOLS: dict[str, Callable[[], AbstractAsyncContextManager[Tool]]] = {
-    "Robotiq 2F-85": robotiq,
-    "SoftHand": softhand,
-    "Franka Hand": franka_hand,
 }
 
 

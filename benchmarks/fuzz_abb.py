@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import socket
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 
 import msgspec
 import numpy as np
@@ -20,11 +23,13 @@ from robots.drivers.abb.egm.egm_messages import (
     encode_measurement,
     encode_set_point,
 )
+from robots.drivers.abb.egm.egm_socket import EgmSocket
 from robots.drivers.abb.emulation.controller_panel import ControllerPanel
 from robots.drivers.abb.emulation.egm_source import EgmSource
 from robots.drivers.abb.emulation.emulated_controller import EmulatedController
 from robots.drivers.abb.emulation.rws_resources import RwsResources
 from robots.drivers.abb.emulation.rws_server import RwsServer
+from robots.drivers.abb.rws.rws_client import RwsClient
 from robots.drivers.abb.rws.rws_state import (
     error_text,
     latest_error,
@@ -34,9 +39,16 @@ from robots.drivers.abb.rws.rws_state import (
     rws_identity,
     speed_share,
 )
+from robots.drivers.abb.rws.rws_transport import RwsTransport
+from robots.drivers.emulation.plant import RealClock
 from robots.drivers.emulation.wire_faults import WireFaults
+from robots.io.wire.datagram_socket import DatagramSocket
+from robots.io.wire.wire_tap import NO_TAP
 
 _ANGLES = (1.0, -2.0, 0.0, 0.5, 0.0, 180.0)
+_DRIVER = ("127.9.9.9", 6510)
+_LIMIT_S = 0.05
+_MOST_BYTES = 65536
 _PATHS = ("/rw/panel/ctrlstate", "/rw/rapid/execution", "/rw/elog/0", "/ctrl/identity", "/rw/nothing")
 
 
@@ -68,7 +80,7 @@ def egm_codec() -> FuzzTarget:
 def egm() -> FuzzTarget:
     """A controller whose guided motion has not begun, so that it follows nothing."""
     controller, panel = _controller()
-    source = EgmSource(controller, panel, WireFaults(), client=None, stop_s=0.2, comm_timeout_s=0.2)
+    source = EgmSource(controller, panel, WireFaults(), client=None, clock=RealClock(), stop_s=0.2, comm_timeout_s=0.2)
     valid = tuple(encode_set_point(EgmSetPoint(number=n, time_ms=4 * n, planned_deg=_ANGLES)) for n in (1, 2**31))
 
     def feed(packet: bytes) -> str:
@@ -76,6 +88,66 @@ def egm() -> FuzzTarget:
         return "ignored"
 
     return FuzzTarget("egm", "to the device", valid, feed, lambda: source.heard > 0 or controller.travel_rad > 0.0)
+
+
+def egm_socket() -> FuzzTarget:
+    """The port of the driver, which takes the newest measurement and answers where it came from."""
+    controller = DatagramSocket(NO_TAP)
+    controller.bind(("127.0.0.1", 0))
+    controller.never_wait()
+    # An address of its own, so that the usual port is free.
+    driver = EgmSocket("127.0.0.1", address=_DRIVER[0], port=_DRIVER[1])
+
+    def feed(packet: bytes) -> str:
+        # Opened anew it takes any number.
+        driver.open()
+        try:
+            controller.send(packet, _DRIVER)
+            if driver.receive(0.0) is None:
+                return "garbage" if driver.garbage else "late or twice"
+            driver.send(_ANGLES)
+            controller.receive(_MOST_BYTES)
+        finally:
+            driver.close()
+        return ""
+
+    return FuzzTarget("egm transport", "to the driver", egm_codec().valid, feed, lambda: False, 0.01)
+
+
+def rws_transport() -> FuzzTarget:
+    """The HTTP client of the driver: each reading gets one answer, and the connection is closed."""
+    resources = RwsResources(*_controller())
+    bodies = [msgspec.json.encode({"_embedded": {"_state": resources.read(path)}}) for path in _PATHS[:4]]
+    heads = [f"HTTP/1.1 200 OK\r\nContent-Length: {len(body)}\r\n\r\n".encode() for body in bodies]
+    challenge = b'HTTP/1.1 401 No\r\nWWW-Authenticate: Digest realm="r", qop="auth", nonce="n"\r\n\r\n'
+    valid = (*(head + body for head, body in zip(heads, bodies, strict=True)), challenge)
+    server = socket.create_server(("127.0.0.1", 0))
+    host, port = server.getsockname()
+    answers = [b""]
+
+    def serve() -> None:
+        while True:
+            client, _ = server.accept()
+            with client, suppress(OSError):
+                client.recv(_MOST_BYTES)
+                client.sendall(answers[0])
+
+    threading.Thread(target=serve, daemon=True).start()
+
+    def feed(packet: bytes) -> str:
+        answers[0] = packet
+        client = RwsClient(host, port, user="user", password="password", timeout_s=_LIMIT_S)
+        transport = RwsTransport("fuzz", lambda: client)
+        transport.open()
+        try:
+            transport.read()
+        except AbbLinkError as error:
+            return error.fault.value
+        finally:
+            transport.close()
+        return ""
+
+    return FuzzTarget("rws transport", "to the driver", valid, feed, lambda: False, 0.01)
 
 
 def rws_answers() -> FuzzTarget:
@@ -148,4 +220,4 @@ def _controller() -> tuple[EmulatedController, ControllerPanel]:
     return controller, ControllerPanel(controller)
 
 
-ABB: tuple[Callable[[], FuzzTarget], ...] = (rws, rws_answers, egm, egm_codec)
+ABB: tuple[Callable[[], FuzzTarget], ...] = (rws, rws_answers, egm, egm_codec, rws_transport, egm_socket)

@@ -27,6 +27,7 @@ from robots.drivers.servo_arm.emulation.board_session import BoardPower, BoardSe
 from robots.drivers.servo_arm.emulation.emulated_board import EmulatedBoard
 from robots.drivers.softhand.emulation.emulated_hand import EmulatedHand
 from robots.drivers.softhand.emulation.hand_session import HandSession, HandWire
+from robots.drivers.softhand.emulation.kinematic_tendon import KinematicTendon
 from robots.drivers.softhand.hand_frames import HandCommandCode, HandFrame, encode_frame, encode_words
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
 from robots.drivers.universal_robots.emulator.dashboard import DashboardCommands
@@ -136,7 +137,8 @@ def robotiq(protocol: str) -> FuzzTarget:
 def softhand() -> FuzzTarget:
     """A hand whose motor is off."""
     clock = DeviceClock()
-    hand = EmulatedHand(clock, active=False)
+    tendon = KinematicTendon(clock)
+    hand = EmulatedHand(clock, tendon, active=False)
     session = HandSession(HandWire(hand, unit=1))
     activated = [False]
     codes = (HandCommandCode.GET_ACTIVATE, HandCommandCode.GET_INPUTS, HandCommandCode.GET_CURRENTS_AND_MEASUREMENTS)
@@ -150,8 +152,8 @@ def softhand() -> FuzzTarget:
         return "" if reply else "ignored"
 
     def has_moved() -> bool:
-        hand.advance()
-        return hand.travel > 0.0 and not activated[0]
+        tendon.measured()
+        return tendon.travel > 0.0 and not activated[0]
 
     return FuzzTarget("softhand", "to the device", tuple(map(encode_frame, frames)), feed, has_moved)
 

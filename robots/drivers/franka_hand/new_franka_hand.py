@@ -9,7 +9,7 @@ from robots.drivers.franka_hand.franka_hand import FrankaHand
 from robots.drivers.franka_hand.franka_hand_driver import FRANKA_HAND
 from robots.drivers.franka_hand.franka_hand_options import FrankaHandOptions
 from robots.drivers.franka_hand.franka_hand_transport import FrankaHandTransport
-from robots.drivers.fresh_link import LinkTiming
+from robots.drivers.tool_timing import tool_timing
 from robots.io.wire.wire_capture import WireCapture
 
 
@@ -32,5 +32,5 @@ def new_franka_hand(options: FrankaHandOptions, *, name: str, clock: Clock, cont
         capabilities=tuple(sorted(FRANKA_HAND.capabilities)),
         proven=FRANKA_HAND.proven,
     )
-    timing = LinkTiming(period_s=options.period_s, stale_s=options.stale_s)
+    timing = tool_timing(context, period_s=options.period_s, stale_s=options.stale_s)
     return FrankaHand(name, transport, timing=timing, patience_s=options.patience_s, about=about)

@@ -8,12 +8,12 @@ from engine.cell.drivers import DeviceContext, DeviceReport
 from engine.clock import Clock
 from engine.errors import CellError
 from robots.drivers.device_transport import DeviceTransport
-from robots.drivers.fresh_link import LinkTiming
 from robots.drivers.robotiq.gripper_registers import GripperCommand, GripperStatus
 from robots.drivers.robotiq.robotiq_driver import ROBOTIQ
 from robots.drivers.robotiq.robotiq_gripper import RobotiqGripper
 from robots.drivers.robotiq.robotiq_options import RobotiqOptions, UrcapSocket
 from robots.drivers.robotiq.urcap_transport import UrcapTransport
+from robots.drivers.tool_timing import tool_timing
 from robots.io.wire.wire_capture import WireCapture
 from robots.io.wire.wire_tap import NO_TAP, WireTap
 
@@ -40,7 +40,7 @@ def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, context: De
         capabilities=tuple(sorted(ROBOTIQ.capabilities)),
         proven=ROBOTIQ.proven,
     )
-    timing = LinkTiming(period_s=options.period_s, stale_s=options.stale_s)
+    timing = tool_timing(context, period_s=options.period_s, stale_s=options.stale_s)
     return RobotiqGripper(name, transport, timing=timing, widths=options.widths, about=about)
 
 

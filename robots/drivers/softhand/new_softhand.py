@@ -7,11 +7,11 @@ from itertools import pairwise
 from engine.cell.drivers import DeviceContext, DeviceReport
 from engine.clock import Clock
 from engine.errors import CellError
-from robots.drivers.fresh_link import LinkTiming
 from robots.drivers.softhand.softhand import SoftHand
 from robots.drivers.softhand.softhand_driver import SOFTHAND
 from robots.drivers.softhand.softhand_options import SoftHandOptions
 from robots.drivers.softhand.softhand_port import HandCalibration
+from robots.drivers.tool_timing import tool_timing
 from robots.io.wire.wire_capture import WireCapture
 
 
@@ -54,5 +54,5 @@ def new_softhand(options: SoftHandOptions, *, name: str, clock: Clock, context: 
         fault_ma=options.fault_ma,
         force_n_ma=options.force_n_ma,
     )
-    timing = LinkTiming(period_s=options.period_s, stale_s=options.stale_s)
+    timing = tool_timing(context, period_s=options.period_s, stale_s=options.stale_s)
     return SoftHand(name, transport, timing=timing, calibration=calibration, about=about)
