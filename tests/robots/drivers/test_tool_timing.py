@@ -15,7 +15,7 @@ CELL = """\
 flexcell: 1
 cell: bench
 {world}robots:
-  left: {{model: panda, gripper: {{model: softhand}}}}
+  left: {{model: ur10, driver: {{kind: universal_robots, host: 127.0.0.1}}}}
 """
 WORLD = "world: {{kind: mujoco, engine_silence_s: {silence_s}}}\n"
 
