@@ -147,7 +147,8 @@ def rws_transport() -> FuzzTarget:
             transport.close()
         return ""
 
-    return FuzzTarget("rws transport", "to the driver", valid, feed, lambda: False, 0.01)
+    # Some wait for the time limit: an answer that has not ended.
+    return FuzzTarget("rws transport", "to the driver", valid, feed, lambda: False, 0.001)
 
 
 def rws_answers() -> FuzzTarget:
