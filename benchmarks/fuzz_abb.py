@@ -148,7 +148,7 @@ def rws_transport() -> FuzzTarget:
         return ""
 
     # Some wait for the time limit: an answer that has not ended.
-    return FuzzTarget("rws transport", "to the driver", valid, feed, lambda: False, 0.001)
+    return FuzzTarget("rws transport", "to the driver", valid, feed, lambda: False, 0.0002)
 
 
 def rws_answers() -> FuzzTarget:

@@ -57,7 +57,11 @@ root:
       choose:
         state: flow.Decide
         with: {when: "${let_go}"}
-        transitions: {"true": open, "false": place}
+        transitions: {"true": aside, "false": place}
+      aside:
+        state: motion.MoveFree
+        with: {robot: arm, pose: {xyz: [1.1, -0.75, 1.15], xyzw: [0, 0.70710678, 0, 0.70710678]}}
+        transitions: {reached: open, blocked: failed, no_way: failed, failed: failed}
       open:
         state: hand.Open
         with: {hand: arm}
