@@ -12,6 +12,7 @@ from engine.authoring.source_location import calling_position
 from engine.authoring.steps import PartKeys, Step, StepKeys, TreePart, new_part, new_step, with_keys
 from engine.document.behavior import Behavior
 from engine.document.signature import read_signature
+from engine.document.text.misfit import explain_misfit
 from engine.errors import DocumentError, Position
 from engine.state import State
 
@@ -105,7 +106,8 @@ def _parameters_of(what: State, place: Position) -> Mapping[str, object]:
         try:
             msgspec.convert(plain, kind)
         except msgspec.ValidationError as error:
-            raise DocumentError(f"the parameters of {kind.__name__} are invalid: {error}", where=place) from error
+            problem = explain_misfit(error, kind)
+            raise DocumentError(f"the parameters of {kind.__name__} are invalid: {problem}", where=place) from error
     return plain
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 
 import msgspec
 
+from engine.document.text.misfit import explain_misfit
 from engine.errors import StoreError
 from engine.messages import Message, Pose
 from engine.messages.demonstrations import Trajectory
@@ -99,9 +100,9 @@ def verified_value(kinds: Mapping[str, EntryKind], kind: str, value: object, *, 
     try:
         typed = msgspec.convert(plain, known.type)
     except (msgspec.ValidationError, RecursionError) as error:
-        raise StoreError(
-            f"invalid {kind} entry: {error}", where=where, hint=f"the fields are {_fields(known.type)}"
-        ) from error
+        what = explain_misfit(error, known.type) if isinstance(error, msgspec.ValidationError) else str(error)
+        hint = f"the fields are {_fields(known.type)}"
+        raise StoreError(f"invalid {kind} entry: {what}", where=where, hint=hint) from error
     if known.check is not None and (fault := known.check(typed)):
         raise StoreError(f"invalid {kind} entry: {fault}", where=where)
     return typed

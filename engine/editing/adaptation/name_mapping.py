@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import cast
 
@@ -78,15 +78,9 @@ class CellThings:
     def all(self, kind: str) -> tuple[str, ...]:
         """Return the names of a kind: things in the order of the cell document, others sorted."""
         document = self.cell.document
-        groups: Mapping[str, Iterable[str]] = {
-            "robot": document.robots,
-            "part": document.parts,
-            "fixture": document.fixtures,
-            "person": document.people,
-            "camera": document.cameras,
-        }
-        if kind in groups:
-            return tuple(groups[kind])
+        things = document.named_things
+        if kind in things:
+            return tuple(things[kind])
         if kind in _ORDER:
             return tuple(sorted(self.names.by_kind.get(kind, ())))
         return tuple(sorted(self.entries.get(kind, ())))

@@ -14,6 +14,7 @@ from engine.bus import Holder
 from engine.cause_chain import storable_cause
 from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
+from engine.document.text.misfit import explain_misfit
 from engine.errors import FlexcellError, StateError, UserdataError
 from engine.runtime.nodes.context import ActivationContext
 from engine.runtime.nodes.error_containment import contain_errors
@@ -169,8 +170,9 @@ class Leaf:
             try:
                 return msgspec.convert(given, self.state)
             except msgspec.ValidationError as error:
+                what = explain_misfit(error, self.state)
                 raise StateError(
-                    f"the parameters of {self.signature.name} do not fit: {error}", where=self.position
+                    f"the parameters of {self.signature.name} do not fit: {what}", where=self.position
                 ) from error
 
     def _inputs(self, scope: Scope) -> Iterator[tuple[str, object]]:
@@ -181,8 +183,9 @@ class Leaf:
                 try:
                     yield key, msgspec.convert(value, declared.type)
                 except msgspec.ValidationError as error:
+                    what = explain_misfit(error, declared.type)
                     raise UserdataError(
-                        f"userdata key {source!r} does not fit input {key!r} of {self.signature.name}: {error}",
+                        f"userdata key {source!r} does not fit input {key!r} of {self.signature.name}: {what}",
                         where=self.position,
                     ) from error
 
