@@ -12,9 +12,9 @@ from engine.authoring.source_location import calling_position
 from engine.authoring.steps import PartKeys, Step, StepKeys, TreePart, new_part, new_step, with_keys
 from engine.document.behavior import Behavior
 from engine.document.signature import read_signature
-from engine.document.text.misfit import explain_misfit
 from engine.errors import DocumentError, Position
 from engine.state import State
+from engine.wording.misfit import explain_misfit
 
 _NOTHING: Mapping[str, object] = {}
 _NO_KEYS: Mapping[str, str] = {}

@@ -8,8 +8,8 @@ from typing import Any
 
 import msgspec
 
-from engine.document.text.misfit import explain_misfit
 from engine.errors import BusError
+from engine.wording.misfit import explain_misfit
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from typing import Any, cast
 import msgspec
 
 from engine.bus.bus import SkillBus
-from engine.document.text.misfit import explain_misfit
 from engine.errors import BusError
 from engine.messages.topic_value import TopicValue
 from engine.skill import Action, Service
+from engine.wording.misfit import explain_misfit
 
 
 def typed_service(bus: SkillBus, address: str, fields: object) -> Service[Any]:

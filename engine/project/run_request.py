@@ -23,7 +23,7 @@ from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.history.resume import last_entered_state, last_entry, read_history, start_checkpoint
 from engine.runtime.plan import Catalogue, Plan
 from engine.runtime.run_options import RunOptions
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _LOOKED_AT = 20
 """Earlier runs in which the entry of a node is looked for."""

@@ -9,7 +9,6 @@ from typing import Annotated, TypeVar
 
 import msgspec
 
-from engine.document.text.misfit import explain_misfit
 from engine.errors import StoreError
 from engine.messages import Message, Pose
 from engine.messages.demonstrations import Trajectory
@@ -18,7 +17,8 @@ from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
 from engine.skills.entries import EntryRecord
 from engine.skills.gripper import GripperSetting
 from engine.store.pydantic_models import PydanticModel, fields_of_model, first_fault, is_model_type
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 T = TypeVar("T")
 

@@ -13,7 +13,7 @@ from msgspec import inspect
 
 from engine.document.expression.cel_environment import ValueType
 from engine.document.expression.cel_expression import as_text
-from engine.document.text.misfit import explain_misfit
+from engine.wording.misfit import explain_misfit
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from engine.check.flow.key_reads import assignments, conditions
 from engine.document.expression.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.signature import StateSignature
-from engine.document.text.misfit import Misfit, in_words, suggested_choices
 from engine.errors import ExpressionError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import Misfit, in_words, suggested_choices
+from engine.wording.suggestions import did_you_mean
 
 
 def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:

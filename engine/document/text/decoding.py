@@ -9,11 +9,11 @@ from typing import TypeVar, cast
 import msgspec
 from msgspec import inspect
 
-from engine.document.text.misfit import Misfit, declared_in, in_words, suggested_choices, types_at
 from engine.document.text.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import Misfit, declared_in, in_words, suggested_choices, types_at
+from engine.wording.suggestions import did_you_mean
 
 T = TypeVar("T")
 

@@ -15,7 +15,7 @@ from engine.document.cell import Cell, Fixture, PartSpec
 from engine.document.entries_document import load_entries
 from engine.editing.adaptation.name_uses import NameUse
 from engine.errors import DocumentError, FlexcellError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Choices = Mapping[str, str]
 """The chosen names by `kind:name` or `name`; an empty one keeps the name as it is."""

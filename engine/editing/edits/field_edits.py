@@ -12,13 +12,13 @@ from engine.document.behavior import BehaviorDocument
 from engine.document.nodes.node_kind import GROUPS, NAMED, SLOTS
 from engine.document.nodes.node_kinds import NODE_KINDS
 from engine.document.nodes.node_spec import NodeSpec
-from engine.document.text.misfit import explain_misfit
 from engine.editing.edits.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
 from engine.editing.edits.edit_session import EditSession, assign_child_roles, named_children, remove_entry
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.node_matching import graft
 from engine.editing.text.outline import NodeRef, Plain
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 _OF_NODES = frozenset(
     ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",

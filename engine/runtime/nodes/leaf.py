@@ -14,7 +14,6 @@ from engine.bus import Holder
 from engine.cause_chain import storable_cause
 from engine.document.expression.expression import Template
 from engine.document.signature import StateSignature
-from engine.document.text.misfit import explain_misfit
 from engine.errors import FlexcellError, StateError, UserdataError
 from engine.runtime.nodes.context import ActivationContext
 from engine.runtime.nodes.error_containment import contain_errors
@@ -25,7 +24,8 @@ from engine.runtime.record.leaf_activation import LeafActivation
 from engine.runtime.record.nonfinite import encode_nonfinite
 from engine.runtime.userdata.userdata import Scope
 from engine.state import ActivationRecord, Context, Outcome, State
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,9 +10,9 @@ from typing import Any
 import msgspec
 from py_trees.behaviour import Behaviour
 
-from engine.document.text.misfit import explain_misfit
 from engine.errors import StateError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 
 def takes_name(kind: type[Behaviour]) -> bool:

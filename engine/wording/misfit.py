@@ -10,8 +10,10 @@ from typing import cast
 import msgspec
 from msgspec import inspect
 
-from engine.document.text.yaml_source import DataPath
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
+
+DataPath = tuple[str | int, ...]
+"""Keys and indices from a document or value inward."""
 
 _AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`key` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
 _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]")

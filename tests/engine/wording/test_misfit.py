@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.text.misfit import Misfit, explain_misfit, place_text
+from engine.wording.misfit import Misfit, explain_misfit, place_text
 
 
 class Lamp(msgspec.Struct, frozen=True):
