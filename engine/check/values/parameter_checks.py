@@ -18,9 +18,16 @@ from engine.wording.misfit import Misfit, in_words, suggested_choices
 from engine.wording.suggestions import did_you_mean
 
 
-def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find unknown parameters and keys, invalid values, and malformed expressions."""
-    defaults = default_values(subject)
+def check_parameters(
+    subject: AnalyzedBehavior, run_parameters: Mapping[str, object] | None = None
+) -> Iterator[Finding]:
+    """Find unknown parameters and keys, invalid values, and malformed expressions.
+
+    Args:
+        subject: The behavior.
+        run_parameters: The parameters of a run of it; others have their defaults.
+    """
+    defaults = {**default_values(subject), **(run_parameters or {})}
     for placed in subject.due:
         signature = subject.signature(placed.node)
         if signature is None:
@@ -66,7 +73,7 @@ def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
 
 
 def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, object]) -> tuple[bool, object]:
-    """Return whether a value is known with the defaults of all parameters, and the value."""
+    """Return whether a value is known with these parameters, and the value."""
     if isinstance(found, ExpressionError) or not found.names <= defaults.keys():
         return False, None
     try:
@@ -124,7 +131,7 @@ def _check_state(
             what = in_words(misfit.what)
             constant = isinstance(found, Template) and found.constant
             choices = suggested_choices(declared.type, misfit.path, misfit.refused_choice)
-            hint = (choices or str(declared.schema.get("description", ""))) if constant else _DEFAULTS
+            hint = (choices or str(declared.schema.get("description", ""))) if constant else _WITH_PARAMETERS
             shown = what if constant else f"{value!r}: {what}{f' ({choices})' if choices else ''}"
             keys = ("with", name, *(misfit.path if constant else ()))
             yield subject.finding("bad-parameter", f"parameter `{name}`: {shown}", placed.path, *keys, hint=hint)
@@ -132,7 +139,7 @@ def _check_state(
         yield from _check_together(subject, placed, signature, values)
 
 
-_DEFAULTS = "this is the value with the default parameters of the behavior"
+_WITH_PARAMETERS = "this is the value with the parameters of the behavior"
 
 
 def _check_together(
@@ -165,7 +172,7 @@ def _check_behavior(
         problem = declared[name].problem(value) if known and name in declared else None
         if problem:
             constant = isinstance(found, Template) and found.constant
-            hint = declared[name].description if constant else _DEFAULTS
+            hint = declared[name].description if constant else _WITH_PARAMETERS
             message = f"parameter `{name}`: {problem}"
             yield subject.finding("bad-parameter", message, placed.path, "with", name, hint=hint)
 
