@@ -49,6 +49,13 @@ def test_a_stream_counts_with_the_arm_stretched_wherever_it_starts() -> None:
     assert said[0] == pytest.approx(_fastest_m_s(STRETCHED), rel=0.15)
 
 
+def test_a_stream_counts_with_all_joints_at_their_limits() -> None:
+    speed = MotionSpeed(_stream(FOLDED), kinematics=panda_kinematics().twin())
+    assert speed.joints_rad_s.tolist() == list(LIMITS.velocity_rad_s)
+    # 0.316 m at 4.35 rad/s, 0.0825 m at 6.525, 0.393 m at 8.7, 0.088 m at 13.92.
+    assert speed.fastest_m_s((0.0,) * 7) == pytest.approx(6.555, abs=1e-3)
+
+
 def test_links_are_as_long_as_in_the_data_sheet() -> None:
     elbow_m = float(np.hypot(0.384, 0.0825))
     assert panda_kinematics().link_lengths_m().tolist() == pytest.approx([0.0, 0.316, 0.0825, elbow_m, 0.0, 0.088])

@@ -44,7 +44,7 @@ def test_a_faster_arm_takes_longer_to_stop_and_one_at_rest_no_time() -> None:
     assert (np.diff(times_s) > 0.0).all()
 
 
-@pytest.mark.parametrize("speed_rad_s", [0.2, 2.0])
+@pytest.mark.parametrize("speed_rad_s", [0.2, 0.45, 2.0])
 def test_a_stop_takes_as_long_as_its_deceleration_needs_to_lose_the_speed(speed_rad_s: float) -> None:
     """It rises with 85 % of the jerk limit to at most 90 % of the acceleration limit, and fades half as fast."""
     limits = dataclasses.replace(
