@@ -33,6 +33,14 @@ class FeltArm:
         return self.reflex.trips(self._state)
 
 
+def test_before_it_has_settings_it_never_trips() -> None:
+    state = ArmState(panda_kinematics())
+    state.wrench[:] = 1e6
+    reflex = CollisionReflex(joints=panda_model().arm_joints, touching=lambda: "")
+    assert not reflex.trips(state)
+    assert reflex.reason == ""
+
+
 def test_an_arm_without_thresholds_never_trips() -> None:
     arm = FeltArm(ControlSettings())
     assert not arm.trips(torque_nm=(1e6,) * 7, force_n=(1e6, 0.0, 0.0))

@@ -26,11 +26,13 @@ def blocked(at_s: float, *pairs: NamePair) -> PathCheck:
     return PathCheck(blocked_at_s=at_s, pairs=pairs or (WALL,), looked_s=at_s)
 
 
-def line(*, duration_s: float = 4.0, speed_rad_s: float = 0.5) -> JointTrajectory:
+def line(*, duration_s: float = 4.0, speed_rad_s: float = 0.5, start_rad: float = 0.0) -> JointTrajectory:
     """Return a path of one joint at a constant speed, rad and rad/s."""
     times_s = np.linspace(0.0, duration_s, round(duration_s / 0.01) + 1)
     return JointTrajectory(
-        dt_s=0.01, position_rad=times_s[:, None] * speed_rad_s, velocity_rad_s=np.full((len(times_s), 1), speed_rad_s)
+        dt_s=0.01,
+        position_rad=start_rad + times_s[:, None] * speed_rad_s,
+        velocity_rad_s=np.full((len(times_s), 1), speed_rad_s),
     )
 
 

@@ -122,6 +122,7 @@ async def test_a_blind_camera_ends_a_stream_but_not_the_one_of_a_person_at_the_a
 
 async def test_values_the_end_and_the_progress_are_those_of_the_stream() -> None:
     async with streamed() as one:
+        assert one.stream.held_by == ""
         one.stream.send((0.5,), age_s=0.01)
         assert (one.inner.sent, one.inner.ages_s, one.stream.progress) == ([(0.5,)], [0.01], 0.0)
         one.stream.finish()
@@ -151,16 +152,19 @@ async def test_a_guided_arm_stands_until_the_hand_leads_away() -> None:
         one.fake.answer, one.pushes = FREE, False
         await asyncio.sleep(0.1)
         assert (one.moves, one.stream.held_by) == (True, "")
+        await one.stream.hold()
+        await one.stream.resume()
+        assert one.moves
 
 
 async def test_it_is_held_by_the_wall_until_it_moves_away_from_it() -> None:
     async with streamed(guided=True) as one:
         one.fake.answer = blocked(0.1)
         await asyncio.sleep(0.1)
-        one.fake.answer, one.pushes, one.path = FREE, False, line(speed_rad_s=0.001)
+        one.fake.answer, one.pushes, one.path = FREE, False, line(speed_rad_s=0.001, start_rad=1.0)
         await asyncio.sleep(0.1)
         assert (one.moves, one.stream.held_by) == (True, "left/hand would touch wall")
-        one.path = line(speed_rad_s=0.002)
+        one.path = line(speed_rad_s=0.002, start_rad=-1.0)
         await asyncio.sleep(0.1)
         assert one.stream.held_by == ""
 
