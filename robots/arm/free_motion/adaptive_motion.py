@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from engine.errors import FlexcellError
 from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.execution.begun_motion import canceled_by_errors
 from robots.arm.execution.collision_prediction import PredictedCollision
 from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.monitored_motion import MonitoredMotion
@@ -295,10 +296,12 @@ class AdaptiveMotion(MonitoredMotion):
     def _follow(self, segment: PathSegment) -> None:
         """Start to follow a path; raises RobotError if the arm rejects it."""
         runner = self._runner
-        self._monitor(runner.port.follow(segment.trajectory, tolerance=runner.tolerance), segment.trajectory)
-        self._segment = segment
-        self._detected_late = self._replan_failure = ""
-        self._listener.follows(segment)
+        motion = runner.port.follow(segment.trajectory, tolerance=runner.tolerance)
+        with canceled_by_errors(motion):
+            self._monitor(motion, segment.trajectory)
+            self._segment = segment
+            self._detected_late = self._replan_failure = ""
+            self._listener.follows(segment)
 
     @property
     def _cancelled(self) -> bool:

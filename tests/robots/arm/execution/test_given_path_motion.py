@@ -154,6 +154,7 @@ async def test_each_wait_has_the_whole_patience() -> None:
         for _ in range(3):
             one.fake.change("wall", answer=blocked(3.9))
             await asyncio.sleep(0.7)
+            assert not one.moves
             one.fake.change("wall", answer=FREE)
             await asyncio.sleep(0.1)
             assert one.moves
@@ -161,8 +162,9 @@ async def test_each_wait_has_the_whole_patience() -> None:
 
 async def test_before_another_arm_it_goes_on_as_long_as_it_can_stop() -> None:
     async with moved() as one:
-        one.fake.answer = blocked(2.0, OTHER_ARM)
-        await asyncio.sleep(2.0 - BRAKING_S - 0.01)
+        await asyncio.sleep(1.0)
+        one.fake.change("right", answer=blocked(2.0, OTHER_ARM))
+        await asyncio.sleep(1.0 - BRAKING_S - 0.01)
         assert one.moves
         report = await one.motion.report()
         assert report.reason == "left/hand would touch right/hand"
