@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine.errors import CellError
 from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning_scene import CONTACT_M
 from robots.planning.request import PathCheck, PathCheckRequest, ToolContact
@@ -28,8 +29,9 @@ def check(
     contact: ToolContact = "at_end",
     from_s: float = 0.0,
     occupancy: OccupancyGrid | None = None,
+    planner: ScenePlanner = PLANNER,
 ) -> PathCheck:
-    return PLANNER.check_path(
+    return planner.check_path(
         PathCheckRequest(scene=scene, arm=ARM, trajectory=way, from_s=from_s, tool_contact=contact, occupancy=occupancy)
     )
 
@@ -103,3 +105,39 @@ def test_only_what_is_still_to_come_counts() -> None:
     scene = PANDA.with_obstacles(WALL)
     assert check(WAY, scene=scene, from_s=WAY.duration_s - 0.05).blocked_at_s is None
     assert check(WAY, scene=scene, from_s=0.2).blocked_at_s == check(WAY, scene=scene).blocked_at_s
+
+
+THERE_AND_BACK = JointTrajectory(
+    dt_s=DOWN.dt_s,
+    position_rad=np.vstack((line(HOME, turned(3, 0.4)).position_rad, line(turned(3, 0.4), BENT).position_rad)),
+    velocity_rad_s=np.zeros((2 * len(DOWN.position_rad), 7)),
+)
+"""Away from what touches at the start, and then into it."""
+
+
+@pytest.mark.parametrize("from_s", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("way", "scene"),
+    [
+        (WAY, PANDA),
+        (WAY, PANDA.with_obstacles(WALL)),
+        (DOWN, below(BENT, deep_m=0.003)),
+        (DOWN, below(BENT, deep_m=3 * CONTACT_M)),
+        (THERE_AND_BACK, below(HOME, deep_m=0.002)),
+    ],
+    ids=["free", "wall", "placed", "pressed", "left and pressed"],
+)
+def test_what_gets_into_a_path_that_was_free_is_found_as_in_a_new_one(
+    way: JointTrajectory, scene: PlanningScene, from_s: float
+) -> None:
+    """Its self-collisions are not looked for again."""
+    known = ScenePlanner(check_s=2e-5)
+    assert check(way, planner=known) == PathCheck(blocked_at_s=None, pairs=(), looked_s=way.duration_s)
+    new = check(way, scene=scene, from_s=from_s, planner=ScenePlanner(check_s=2e-5))
+    assert check(way, scene=scene, from_s=from_s, planner=known) == new
+    assert (new.blocked_at_s is None) is (scene in (PANDA, below(BENT, deep_m=0.003)))
+
+
+def test_a_motion_of_another_arm_is_refused() -> None:
+    with pytest.raises(CellError, match="a path of 6 joints does not fit this arm"):
+        check(line(np.zeros(6), np.ones(6)))
