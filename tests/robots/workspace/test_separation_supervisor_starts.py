@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from engine.document.cell import Cell
 from engine.messages import FramePoses, Vector3
 from engine.skill import Action
 from engine.skills.collision_options import CollisionOptions
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
+from engine.skills.guiding import GuideArm
 from engine.skills.jogging import JogCollisionOptions, JogJoints, StepTool
 from engine.skills.motion import JointTrapVel
 from engine.skills.people import CountContacts, Reach
@@ -36,14 +39,40 @@ SLOW_SIDE = replace(
 _CLOSE_M = 0.05
 _MOVES_RAD_S = 0.01
 
-TO_JOINTS = JointTrapVel(joints=GOAL, speed=1.0, collisions=CollisionOptions(avoid=False))
-GOALS: dict[str, Action[Any, Any]] = {
-    "joints": TO_JOINTS,
-    "planned": MoveFree(target=MotionTarget(joints=GOAL), options=PlanOptions(speed=1.0)),
-    "jog": JogJoints(
-        velocity_rad_s=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), duration_s=1.0, scene=JogCollisionOptions(minded=False)
-    ),
-    "step": StepTool(step_m=(0.0, 0.3, 0.0), speed_m_s=0.5, scene=JogCollisionOptions(minded=False)),
+Begin = Callable[[SeparatedCell], Awaitable[Callable[[], Awaitable[object]]]]
+"""Starts a motion, and returns what ends it."""
+
+UNMINDED, BLIND = JogCollisionOptions(minded=False), CollisionOptions(avoid=False)
+TO_JOINTS = JointTrapVel(joints=GOAL, speed=1.0, collisions=BLIND)
+
+
+def _sent(goal: Action[Any, Any]) -> Begin:
+    async def begin(cell: SeparatedCell) -> Callable[[], Awaitable[object]]:
+        handle = cell.bus.send_goal(goal, to="left")
+
+        async def end() -> None:
+            handle.cancel()
+            await handle.result()
+
+        return end
+
+    return begin
+
+
+async def _streamed(cell: SeparatedCell) -> Callable[[], Awaitable[object]]:
+    on = await cell.bus.call(SwitchDirectControl(on=True, watchdog_s=2.0, collisions=BLIND), to="left")
+    assert on.success, on.message
+    cell.bus.topic("left/direct_joints", JointCommand).publish(JointCommand(position_rad=GOAL))
+    return lambda: cell.bus.call(SwitchDirectControl(on=False), to="left")
+
+
+MOTIONS: dict[str, Begin] = {
+    "joints": _sent(TO_JOINTS),
+    "planned": _sent(MoveFree(target=MotionTarget(joints=GOAL), options=PlanOptions(speed=1.0))),
+    "jog": _sent(JogJoints(velocity_rad_s=(1.0, *(0.0,) * 6), duration_s=1.0, scene=UNMINDED)),
+    "step": _sent(StepTool(step_m=(0.0, 0.3, 0.0), speed_m_s=0.5, scene=UNMINDED)),
+    "direct": _streamed,
+    "guided": _sent(GuideArm(collisions=BLIND)),
 }
 pytestmark = pytest.mark.virtual
 
@@ -54,8 +83,8 @@ def _tool_xyz(cell: SeparatedCell) -> Vector3:
     return frames.xyz[frames.names.index("left/panda_hand_tcp")]
 
 
-async def _speed_at_contact(folder: Path, document: Cell, goal: Action[Any, Any], *, sent_after_s: float) -> float:
-    """Send a goal so long after the hand has begun to come; return the arm's speed in rad/s just before they touch."""
+async def _speed_at_contact(folder: Path, document: Cell, begin: Begin, *, sent_after_s: float) -> float:
+    """Start a motion so long after the hand has set out; return the arm's speed in rad/s just before they touch."""
     async with opened_cell(folder, document) as cell:
         await cell.move(START).result()
         # The cameras have nothing to do, and their map grows old.
@@ -64,25 +93,24 @@ async def _speed_at_contact(folder: Path, document: Cell, goal: Action[Any, Any]
         reach = Reach(person="anna", hand_m=(x + _CLOSE_M, y, z), speed_m_s=1.6, stay_s=1.0)
         await cell.bus.call(reach, to="cell")
         await cell.bus.clock.sleep(sent_after_s)
-        handle = cell.bus.send_goal(goal, to="left")
+        end = await begin(cell)
         before_rad_s = now_rad_s = 0.0
         end_s = cell.bus.clock.now_s() + 2.0
         while (await cell.bus.call(CountContacts(person="anna"), to="cell")).contacts == 0:
             assert cell.bus.clock.now_s() < end_s, "the hand has touched nothing"
             await cell.bus.clock.sleep(0.001)
             before_rad_s, now_rad_s = now_rad_s, cell.speed_rad_s
-        handle.cancel()
-        await handle.result()
+        await end()
         return before_rad_s
 
 
 @pytest.mark.parametrize("sent_after_s", [0.4, 0.9])
-@pytest.mark.parametrize("kind", GOALS)
+@pytest.mark.parametrize("kind", MOTIONS)
 async def test_a_hand_that_comes_near_meets_an_arm_at_rest(tmp_path: Path, kind: str, sent_after_s: float) -> None:
-    assert await _speed_at_contact(tmp_path, CELL, GOALS[kind], sent_after_s=sent_after_s) < _MOVES_RAD_S
+    assert await _speed_at_contact(tmp_path, CELL, MOTIONS[kind], sent_after_s=sent_after_s) < _MOVES_RAD_S
 
 
 @pytest.mark.parametrize("sent_after_s", [0.75, 0.8])
 async def test_an_arm_does_not_start_before_the_slowest_camera_has_looked(tmp_path: Path, sent_after_s: float) -> None:
     """The other one shows an empty cell at once: of the hand only this one knows."""
-    assert await _speed_at_contact(tmp_path, SLOW_SIDE, TO_JOINTS, sent_after_s=sent_after_s) < _MOVES_RAD_S
+    assert await _speed_at_contact(tmp_path, SLOW_SIDE, _sent(TO_JOINTS), sent_after_s=sent_after_s) < _MOVES_RAD_S
