@@ -345,10 +345,13 @@ class Workspace:
                 await self.ready()
                 self._refresh(self._scene())
                 failure = ""
-            except FlexcellError as error:
+            except Exception as error:
+                # Whatever fails, moving arms must not continue as if nothing had changed.
                 if str(error) != failure:
                     failure = str(error)
-                    _log.warning("the scene is not measured: %s", failure)
+                    _log.warning(
+                        "the scene is not measured: %s", failure, exc_info=not isinstance(error, FlexcellError)
+                    )
                 # Whoever watches checks its path, and gets the same error.
                 self._notify(set())
 

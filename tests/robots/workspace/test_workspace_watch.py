@@ -20,11 +20,12 @@ def _move(cell: FakeCell) -> None:
     cell.port.lead_to(tuple((cell.port.sample().position_rad + 0.1).tolist()))
 
 
+@pytest.mark.parametrize("error", [RobotError(LOST), ValueError(LOST)], ids=["of the robot", "unexpected"])
 async def test_measurements_that_fail_make_watchers_look_and_go_on_afterwards(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    error: Exception, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def lost() -> ArmSample:
-        raise RobotError(LOST)
+        raise error
 
     heard: list[frozenset[str]] = []
     async with fake_cell() as cell:
