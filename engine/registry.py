@@ -23,8 +23,8 @@ from engine.document.state_catalogue import StateCatalogue
 from engine.errors import RegistryError
 from engine.host.isolated_loading import LoadFailure, load_isolated
 from engine.state import State
-from engine.suggestions import did_you_mean
 from engine.type_preparation import prepare_types
+from engine.wording.suggestions import did_you_mean
 
 STATES = "flexcell.states"
 WORLDS = "flexcell.worlds"

@@ -14,6 +14,7 @@ from engine.document.behavior import Behavior
 from engine.document.signature import read_signature
 from engine.errors import DocumentError, Position
 from engine.state import State
+from engine.wording.misfit import explain_misfit
 
 _NOTHING: Mapping[str, object] = {}
 _NO_KEYS: Mapping[str, str] = {}
@@ -105,7 +106,8 @@ def _parameters_of(what: State, place: Position) -> Mapping[str, object]:
         try:
             msgspec.convert(plain, kind)
         except msgspec.ValidationError as error:
-            raise DocumentError(f"the parameters of {kind.__name__} are invalid: {error}", where=place) from error
+            problem = explain_misfit(error, kind)
+            raise DocumentError(f"the parameters of {kind.__name__} are invalid: {problem}", where=place) from error
     return plain
 
 

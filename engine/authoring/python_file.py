@@ -13,8 +13,8 @@ from types import ModuleType
 from engine.cause_chain import cause_of, describe_cause
 from engine.document.behavior import Behavior
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.suggestions import did_you_mean
 from engine.type_preparation import prepare_types
+from engine.wording.suggestions import did_you_mean
 
 
 def load_python_behavior(name: str) -> Behavior:

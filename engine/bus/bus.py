@@ -21,7 +21,7 @@ from engine.clock import Clock
 from engine.errors import BusError, FlexcellError, GoalRejected, NoSuchSkill, SkillFailed
 from engine.skill import Action, Service, Skill
 from engine.skills.goal_end import GoalEnd
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 R = TypeVar("R")
 F = TypeVar("F")

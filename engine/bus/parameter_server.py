@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from engine.errors import BusError
+from engine.wording.misfit import explain_misfit
 
 
 @dataclass(frozen=True)
@@ -70,4 +71,4 @@ def _converted(name: str, kind: Any, value: object) -> object:
     try:
         return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
-        raise BusError(str(error), where=name) from error
+        raise BusError(explain_misfit(error, kind), where=name) from error

@@ -10,6 +10,7 @@ from engine.bus.bus import SkillBus
 from engine.errors import BusError
 from engine.messages.topic_value import TopicValue
 from engine.skill import Action, Service
+from engine.wording.misfit import explain_misfit
 
 
 def typed_service(bus: SkillBus, address: str, fields: object) -> Service[Any]:
@@ -52,7 +53,8 @@ def publish_command(bus: SkillBus, topic: str, message: object) -> None:
     try:
         typed = msgspec.convert(message, target.kind)
     except msgspec.ValidationError as error:
-        raise BusError(f"this is not a {target.kind.__name__}: {error}", where=topic) from error
+        what = explain_misfit(error, target.kind)
+        raise BusError(f"this is not a {target.kind.__name__}: {what}", where=topic) from error
     target.publish(typed)
 
 
@@ -77,4 +79,4 @@ def _typed(bus: SkillBus, address: str, fields: object) -> object:
     try:
         return msgspec.convert(fields, skill)
     except msgspec.ValidationError as error:
-        raise BusError(f"this is not a {skill.__name__}: {error}", where=address) from error
+        raise BusError(f"this is not a {skill.__name__}: {explain_misfit(error, skill)}", where=address) from error

@@ -19,7 +19,7 @@ from engine.document.cell import Cell
 from engine.document.robot_spec import RobotSpec
 from engine.errors import FlexcellError
 from engine.state import Skills
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""

@@ -57,7 +57,7 @@ def check_behavior(
         entries: Names, by kind, of the entries that the store will have; by default the seed of the
             cell. Without a cell they are not checked.
         cell: The cell that it runs in, or its context; by default the cell that it names.
-        parameters: The parameters of a run, for checks of names in the cell; others have their defaults.
+        parameters: The parameters of a run, for checks of values and of names in the cell; others have their defaults.
     """
     context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
     findings = [_invalid_cell(behavior, context.mistake)] if context.mistake is not None else []
@@ -74,14 +74,15 @@ def check_behavior(
         flows[id(subject)] = DataFlow(subject, DefinitionSites(dict.fromkeys(keys)))
     with METER.limited(MAX_CHECK_STEPS, "this check"):
         for subject in subjects:
-            findings += _check_one(subject, known, use, read[id(subject)], BehaviorDataFlows(flows))
+            given = parameters if subject is subjects[0] else None
+            findings += _check_one(subject, known, use, read[id(subject)], BehaviorDataFlows(flows), given)
     return tuple(findings)
 
 
 def check_given(
     behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]
 ) -> tuple[Finding, ...]:
-    """Return findings for names that are not in the cell of a run, with the parameters of the run.
+    """Return findings for values and for names that are not in the cell of a run, with the parameters of the run.
 
     Args:
         behavior: The behavior to run.
@@ -92,7 +93,9 @@ def check_given(
     subjects = analyze_behaviors(behavior, catalogue)
     use = CellNameCheck(cell_names(cell), subjects, parameters)
     with METER.limited(MAX_CHECK_STEPS, "this check"):
-        return tuple(finding for subject in subjects for finding in use.check(subject, None))
+        values = check_parameters(subjects[0], parameters) if parameters else ()
+        wrong = [finding for finding in values if finding.code == "bad-parameter"]
+        return (*wrong, *(finding for subject in subjects for finding in use.check(subject, None)))
 
 
 def check_file(
@@ -125,6 +128,7 @@ def _check_one(
     use: CellNameCheck | None,
     read: Sequence[KeyRead],
     flows: BehaviorDataFlows,
+    run_parameters: Mapping[str, object] | None,
 ) -> list[Finding]:
     flow = flows.of(subject)
     resolver = TypeInference(flow, flows)
@@ -135,7 +139,7 @@ def _check_one(
         *check_reachability(subject),
         *check_trees(subject),
         *check_conditions(subject),
-        *check_parameters(subject),
+        *check_parameters(subject, run_parameters),
         *check_policies(subject),
         *check_units(subject),
         *check_magnitudes(subject),

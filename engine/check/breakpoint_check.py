@@ -17,7 +17,7 @@ from engine.document.behavior import Behavior
 from engine.document.expression.expression import Template, compile_template
 from engine.document.state_catalogue import Catalogue
 from engine.errors import ExpressionError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 class ConditionCheck(msgspec.Struct, frozen=True, kw_only=True):

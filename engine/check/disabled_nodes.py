@@ -11,7 +11,7 @@ from engine.document.nodes.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, Nod
 from engine.document.signature import StateSignature, read_signature
 from engine.document.state_catalogue import find_state
 from engine.errors import RegistryError, StateError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def check_disabled(subject: AnalyzedBehavior) -> Iterator[Finding]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Literal
 
 from engine.document.nodes.decorator_spec import DecoratorSpec
-from engine.document.nodes.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec
+from engine.document.nodes.node_spec import GUARD_TARGETS, NodeSpec
+from engine.document.nodes.tree_composites import ParallelSpec
 
 Status = Literal["success", "failure", "skipped"]
 Statuses = frozenset[Status]
@@ -74,7 +75,9 @@ def _branched(ends: Sequence[Statuses]) -> Statuses:
     return found | ((otherwise[0] if otherwise else FAILURE) if condition - SUCCESS else NEVER)
 
 
-def _parallel(group: tuple[NodeSpec, ...] | ParallelSpec, children: Sequence[tuple[str, Statuses]]) -> Statuses:
+def _parallel(
+    group: tuple[NodeSpec, ...] | ParallelSpec[NodeSpec], children: Sequence[tuple[str, Statuses]]
+) -> Statuses:
     if isinstance(group, ParallelSpec) and group.counts:
         return _counted(group, [statuses for _, statuses in children])
     policy = "all" if isinstance(group, tuple) else group.policy
@@ -86,7 +89,7 @@ def _parallel(group: tuple[NodeSpec, ...] | ParallelSpec, children: Sequence[tup
     return failing | (SUCCESS if succeeds else NEVER) | _all_skipped([ends for _, ends in children])
 
 
-def _counted(group: ParallelSpec, ends: Sequence[Statuses]) -> Statuses:
+def _counted(group: ParallelSpec[NodeSpec], ends: Sequence[Statuses]) -> Statuses:
     needed = group.success_count or len(ends)
     able = sum("success" in statuses for statuses in ends)
     failing = sum("failure" in statuses for statuses in ends)

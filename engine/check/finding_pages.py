@@ -6,7 +6,7 @@ from pathlib import Path
 
 from engine.check.finding import CODES
 from engine.errors import FlexcellError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 FOLDER = "docs/findings"
 """Where the pages are in the repository."""

@@ -19,7 +19,7 @@ from engine.document.simulated_devices import with_simulated_devices
 from engine.document.substitutes import Substitutes
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.runtime.plan import Catalogue, Plan, new_plan
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Simulate = Annotated[
     list[str] | None,

@@ -162,6 +162,17 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     ] = {}
 
     @property
+    def named_things(self) -> dict[str, Mapping[str, object]]:
+        """What stands in the cell and has a name of its own, by kind; a behavior for another cell has these mapped."""
+        return {
+            "robot": self.robots,
+            "part": self.parts,
+            "fixture": self.fixtures,
+            "person": self.people,
+            "camera": self.cameras,
+        }
+
+    @property
     def real_devices(self) -> dict[str, str]:
         """The devices that are not simulated, `left` or `left/gripper`, with the names of their drivers."""
         arms = {name: robot.driver_kind for name, robot in self.robots.items() if not robot.simulated}

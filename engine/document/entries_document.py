@@ -39,7 +39,7 @@ from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError
 from engine.messages import Pose
 from engine.skills.entries import EntryRecord
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 EntryName = Annotated[
     str,

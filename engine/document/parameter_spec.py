@@ -11,7 +11,7 @@ from msgspec import UNSET, Meta
 from engine.document.text.decoding import StrictModel
 from engine.errors import DocumentError
 from engine.messages import Pose
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 ParameterType = Literal["number", "integer", "string", "boolean", "pose", "joints", "list", "mapping"]
 

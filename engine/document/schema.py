@@ -38,7 +38,9 @@ def schema_texts() -> dict[str, str]:
             "title": f"flexcell {name} document",
             **msgspec.json.schema(model, schema_hook=any_value),
         }
-        texts[f"{name}.schema.json"] = json.dumps(one_line_texts(schema), indent=2, ensure_ascii=False) + "\n"
+        text = json.dumps(one_line_texts(schema), indent=2, ensure_ascii=False) + "\n"
+        # A model that holds nodes is named without them.
+        texts[f"{name}.schema.json"] = text.replace("_NodeSpec_", "").replace("[NodeSpec]", "")
     return texts
 
 

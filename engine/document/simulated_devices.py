@@ -10,7 +10,7 @@ from msgspec import structs
 from engine.document.cell import Cell
 from engine.document.robot_spec import RobotSpec
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 ALL_DEVICES = "all"
 """Stands for every device of a cell that has a driver."""

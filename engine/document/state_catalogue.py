@@ -15,7 +15,7 @@ from types import MappingProxyType, ModuleType
 from engine.document.project_file import PROJECT_FILE
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.state import State
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Catalogue = Mapping[str, type[State]]
 

@@ -19,12 +19,12 @@ from engine.document.nodes.node_spec import (
     ConcurrencySpec,
     ForEachSpec,
     NodeSpec,
-    ParallelSpec,
 )
+from engine.document.nodes.tree_composites import ParallelSpec
 from engine.document.text.decoding import combine_mistakes
 from engine.document.text.mistakes import MAX_MISTAKES
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _SHORTEST_EVERY_S = 1e-3
 _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
@@ -209,7 +209,7 @@ def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleVi
         yield from _policy(behavior, path, node, node.parallel)
 
 
-def _policy(behavior: Behavior, path: str, node: NodeSpec, group: ParallelSpec) -> Iterator[RuleViolation]:
+def _policy(behavior: Behavior, path: str, node: NodeSpec, group: ParallelSpec[NodeSpec]) -> Iterator[RuleViolation]:
     """Require that a policy of a parallel names its children."""
     if group.counts:
         yield from _thresholds(behavior, path, group)
@@ -222,7 +222,7 @@ def _policy(behavior: Behavior, path: str, node: NodeSpec, group: ParallelSpec) 
             yield RuleViolation(path=path, error=error, excess=("parallel", "policy"))
 
 
-def _thresholds(behavior: Behavior, path: str, group: ParallelSpec) -> Iterator[RuleViolation]:
+def _thresholds(behavior: Behavior, path: str, group: ParallelSpec[NodeSpec]) -> Iterator[RuleViolation]:
     """Thresholds are reachable, and exclude a policy."""
     for key in ("success_count", "failure_count"):
         count: int | None = getattr(group, key)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from engine.editing.text.yaml_style import scalar_text
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _HEAD = "flexcell: 1\nname: {name}\n{cell}outcomes: [finished, failed]\nsuccess: [finished]\nroot:\n"
 _TREE_HEAD = "flexcell: 1\nname: {name}\n{cell}outcomes: [success, failure]\nsuccess: [success]\nroot:\n"

@@ -30,7 +30,7 @@ from engine.journal.engine_presence import living_engines
 from engine.journal.event_block import EventBlock
 from engine.journal.event_row import EventRow
 from engine.journal.journal_port import RunOrigin, RunRecord
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 T = TypeVar("T")
 

@@ -22,7 +22,7 @@ from engine.errors import ControlError, DocumentError, Position
 from engine.library.behavior_graph import GraphNode, new_graph
 from engine.library.usages import Usages, UsedKind, find_usages
 from engine.runtime.plan import Catalogue
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _SUFFIXES = (".yaml", ".yml", ".json")
 

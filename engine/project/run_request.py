@@ -23,7 +23,7 @@ from engine.runtime.history.checkpoint import Checkpoint
 from engine.runtime.history.resume import last_entered_state, last_entry, read_history, start_checkpoint
 from engine.runtime.plan import Catalogue, Plan
 from engine.runtime.run_options import RunOptions
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _LOOKED_AT = 20
 """Earlier runs in which the entry of a node is looked for."""
@@ -258,7 +258,7 @@ def require_no_new_real_devices(found: RecordedRun, cell: Cell | None) -> None:
 
 
 def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]) -> None:
-    """Reject a run that names objects which its cell does not have.
+    """Reject a run whose parameters do not fit its states, or that names objects which its cell does not have.
 
     Args:
         behavior: The behavior.
@@ -267,6 +267,7 @@ def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, paramete
         parameters: The parameters of the run.
 
     Raises:
-        DocumentError: a robot, part, frame or other object is not in the cell; `where` is the position.
+        DocumentError: a value does not fit, or a robot, part, frame or other object is not in the cell; `where` is the
+            position.
     """
     require_no_errors(check_given(behavior, catalogue, cell, parameters))

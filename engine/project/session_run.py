@@ -17,7 +17,7 @@ from engine.runtime.history.run_view import RunView, run_duration_s
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import NodeWork
 from engine.runtime.run_result import RunResult
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _KEPT_RUNS = 200
 

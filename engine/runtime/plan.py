@@ -25,7 +25,7 @@ from engine.runtime.nodes.priority import Priority
 from engine.runtime.nodes.substitute_work import SUBSTITUTE, require_used, substitute_for
 from engine.runtime.userdata.userdata_value import plain_value
 from engine.state import State
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 __all__ = ["Catalogue", "Plan", "new_plan"]
 

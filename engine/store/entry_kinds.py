@@ -17,7 +17,8 @@ from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
 from engine.skills.entries import EntryRecord
 from engine.skills.gripper import GripperSetting
 from engine.store.pydantic_models import PydanticModel, fields_of_model, first_fault, is_model_type
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 T = TypeVar("T")
 
@@ -99,9 +100,9 @@ def verified_value(kinds: Mapping[str, EntryKind], kind: str, value: object, *, 
     try:
         typed = msgspec.convert(plain, known.type)
     except (msgspec.ValidationError, RecursionError) as error:
-        raise StoreError(
-            f"invalid {kind} entry: {error}", where=where, hint=f"the fields are {_fields(known.type)}"
-        ) from error
+        what = explain_misfit(error, known.type) if isinstance(error, msgspec.ValidationError) else str(error)
+        hint = f"the fields are {_fields(known.type)}"
+        raise StoreError(f"invalid {kind} entry: {what}", where=where, hint=hint) from error
     if known.check is not None and (fault := known.check(typed)):
         raise StoreError(f"invalid {kind} entry: {fault}", where=where)
     return typed

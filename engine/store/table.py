@@ -8,7 +8,7 @@ from typing import Protocol
 
 from engine.errors import EntryConflict, EntryNotFound
 from engine.store.rows import ChangeStamp, EntryDraft, EntryQuery, RevisionRow
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 class ChangeSource(Protocol):

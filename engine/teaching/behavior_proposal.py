@@ -13,9 +13,9 @@ from engine.document.text.yaml_writer import write_yaml
 from engine.errors import SkillFailed
 from engine.messages import Vector3
 from engine.skills.proposing import Proposal, ProposalOptions, TaughtStep, ToolName
-from engine.suggestions import did_you_mean
 from engine.teaching.proposal_nodes import Node, ProposalNodeBuilder
 from engine.teaching.step_roles import MOTIONS, PLACES, ObservedStep, assign_step_roles, guess_part
+from engine.wording.suggestions import did_you_mean
 
 _HEADER = "# Proposed from taught entries: {names}.\n# If an entry is overwritten, the next run uses the new values.\n"
 _UNKNOWN_WIDTH = "The width of the part is unknown: any object between the fingers counts as held."

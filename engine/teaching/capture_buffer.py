@@ -11,7 +11,7 @@ import msgspec
 from engine.errors import FlexcellError, StoreError
 from engine.host.private_files import make_private_folder, open_private
 from engine.skills.teaching import Capture
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 MAX_CAPTURES = 200
 """Maximum number of captures; further ones are rejected, because the buffer is not a store."""

@@ -7,7 +7,7 @@ import msgspec
 from engine.errors import SkillFailed
 from engine.messages import FramePoses, Pose
 from engine.messages.pose_algebra import compose_poses, invert_pose
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 WORLD = "world"
 

@@ -19,9 +19,9 @@ from engine.skills.motion import ForwardKinematics
 from engine.skills.proposing import Proposal, ProposeBehavior, TaughtStep, ToolName
 from engine.store.contract import Store
 from engine.store.entry_kinds import Joints, decode_entry
-from engine.suggestions import did_you_mean
 from engine.teaching.behavior_proposal import build_proposal
 from engine.teaching.step_roles import ObservedStep
+from engine.wording.suggestions import did_you_mean
 
 M = TypeVar("M", bound=msgspec.Struct)
 

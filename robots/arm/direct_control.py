@@ -60,7 +60,7 @@ class DirectControl:
                 rules = await self._rules(guard, request)
                 reason = self._unavailable_reason()
                 if runner.stops != stops:
-                    reason = "the arm was stopped meanwhile"
+                    reason = "the arm was stopped or lost meanwhile"
                 elif self._owner() != owner:
                     reason = "the lease on the arm has ended, or changed, meanwhile"
                 if reason:

@@ -208,8 +208,7 @@ class ArmControlLoop:
             self.motion.fail(self._reflex.reason)
             events.append(ReflexTripped(motion=self.motion.number, arm=self.name, reason=self._reflex.reason))
         if self.separation is not None:
-            motion = self.motion
-            motion.permitted_pace = self.separation.permitted_share(step_s, motion.generator, motion.position)
+            self.motion.permitted_pace = self.separation.permitted_share(step_s, self.motion.generator)
         events.extend(self.motion.step(step_s, self.state))
         jump = self.watch.look(step_s, self.motion)
         if jump is not None:

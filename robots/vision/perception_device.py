@@ -19,7 +19,7 @@ from engine.messages.sensing import (
 )
 from engine.robot import DeviceStatus
 from engine.skills.simulated_world import CameraFault, SetCameraFault, SetCameraFaultResult
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
 from robots.sim.world.sim_world import SimWorld
@@ -51,14 +51,18 @@ class PerceptionDevice:
         self.setup = setup
         self._world = world
         slowest_s = max(1.0 / camera.rate_hz for camera in setup.cameras)
-        self.map = LiveOccupancyMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
+        self.map = LiveOccupancyMap(
+            now_s=now_s,
+            fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S,
+            periods_s={camera.name: 1.0 / camera.rate_hz for camera in setup.cameras},
+        )
         self.detections = DetectionService(setup.cameras)
         self.known: KnownGeometry | None = None
         self.status = DeviceStatus.DISCONNECTED
         self.dropped = 0
         self.made = ""
         self._looks = 0
-        self._forget = False
+        self._forget = self._forgets = False
         self._base = 0
         self._last: PerceptionResult | None = None
         self.observed: ObservedSpace | None = None
@@ -90,9 +94,9 @@ class PerceptionDevice:
         return self.map.stale_reason
 
     @property
-    def age_s(self) -> float:
-        """Age of the latest images in the map, infinite without any."""
-        return self.map.age_s
+    def confirmed_age_s(self) -> float:
+        """The time since which some camera has not shown what is there, infinite before two images of each."""
+        return self.map.confirmed_age_s
 
     @property
     def starting(self) -> bool:
@@ -144,6 +148,7 @@ class PerceptionDevice:
         image = self._world.host.image()
         forget = self._forget and bool(names)
         self._forget = self._forget and not forget
+        self._forgets = self._forgets or forget
         return PerceptionRequest(
             # An image begins with the step count.
             time_s=round(float(image[0])) * self._world.host.summary.step_s,
@@ -159,6 +164,7 @@ class PerceptionDevice:
     def restart_revisions(self) -> None:
         """Prepare for the maps of a new camera rig; revisions keep increasing."""
         self._base = self.map.latest.revision if self.map.latest is not None else 0
+        self.map.begins_anew()
 
     def take_result(self, seen: PerceptionResult, *, looked_at_s: float) -> None:
         """Publish a result; results that arrive after the loss of the world are discarded."""
@@ -171,7 +177,12 @@ class PerceptionDevice:
             self._last = seen
             self._take_observed(seen.observed)
             grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
-            if self.map.arrived(grid, looked_at_s=looked_at_s) and self._grids is not None:
+            if self._forgets:
+                self.map.begins_anew()
+                self._forgets = False
+            # The images of an unhealthy camera are not in the map.
+            mapped = [status.camera for status in seen.statuses if not status.unhealthy]
+            if self.map.arrived(grid, looked_at_s=looked_at_s, cameras=mapped) and self._grids is not None:
                 self._grids.publish(grid)
         for image in seen.images:
             self._depths[image.camera].publish(image)

@@ -44,7 +44,7 @@ _CHANGE_M, _CHANGE_SHARE = 0.02, 0.05
 
 
 class SeparationSensor(Protocol):
-    """The occupancy map with its age."""
+    """The occupancy map with the age of what it shows."""
 
     @property
     def latest(self) -> OccupancyGrid | None:
@@ -52,8 +52,8 @@ class SeparationSensor(Protocol):
         ...
 
     @property
-    def age_s(self) -> float:
-        """Age of the latest images in the map, infinite without any."""
+    def confirmed_age_s(self) -> float:
+        """The time since which some camera has not shown what is there, infinite before two images of each."""
         ...
 
     @property
@@ -195,7 +195,9 @@ class SeparationSupervisor:
         sensor = self._sensor
         if sensor.stale_reason:
             return f"the occupancy map is not valid: {sensor.stale_reason}"
-        return describe_unhealthy(sensor.camera_statuses)
+        if unhealthy := describe_unhealthy(sensor.camera_statuses):
+            return unhealthy
+        return "" if math.isfinite(sensor.confirmed_age_s) else "not every camera has taken two images yet"
 
     def _send_distance(self, placement: ArmPlacement, look: MeasuredPoses) -> NearestBody:
         grid = self._sensor.latest
@@ -205,7 +207,7 @@ class SeparationSupervisor:
         arm, held = self._arms[placement.name], self._workspace.attached_to(placement.name)
         nearest = arm.nearest(look, grid, self._bodies, held)
         measured = MeasuredSeparation(
-            distance_m=nearest.distance_m, age_s=self._sensor.age_s, extents_m=arm.extents_m(held)
+            distance_m=nearest.distance_m, age_s=self._sensor.confirmed_age_s, extents_m=arm.extents_m(held)
         )
         self._world.host.send(MeasureSeparation(arm=placement.name, measured=measured))
         return nearest

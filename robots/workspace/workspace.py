@@ -319,7 +319,11 @@ class Workspace:
     def _notify(self, changed: set[str] | frozenset[str]) -> None:
         """Notify the listeners, and publish the scene if it has changed."""
         for watcher in tuple(self._watchers):
-            watcher(frozenset(changed))
+            try:
+                watcher(frozenset(changed))
+            except Exception:
+                # The motion of one arm may fail in any way; those of others must learn of the change.
+                _log.exception("a watcher of the workspace failed")
         live = self._live
         if live is None or live.revision == self._published_revision:
             return
@@ -334,14 +338,22 @@ class Workspace:
             self._topic.publish(live.state())
 
     async def _measure(self) -> None:
-        try:
-            await self.ready()
-            while True:
-                await self._clock.sleep(LOOK_S)
+        failure = ""
+        while True:
+            await self._clock.sleep(LOOK_S)
+            try:
+                await self.ready()
                 self._refresh(self._scene())
-        except FlexcellError as error:
-            # Moving arms get the same error from the planners and the port.
-            _log.warning("scene monitoring has stopped: %s", error)
+                failure = ""
+            except Exception as error:
+                # Whatever fails, moving arms must not continue as if nothing had changed.
+                if str(error) != failure:
+                    failure = str(error)
+                    _log.warning(
+                        "the scene is not measured: %s", failure, exc_info=not isinstance(error, FlexcellError)
+                    )
+                # Whoever watches checks its path, and gets the same error.
+                self._notify(set())
 
     def _end_watch(self, watcher: ChangeListener) -> None:
         if watcher in self._watchers:

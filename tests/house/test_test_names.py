@@ -39,7 +39,8 @@ def test_a_test_is_named_after_the_module_or_room_that_it_tests(package: str) ->
     tests = sorted((TESTS / package).rglob("test_*.py"))
     assert tests
     others = [test for test in tests if not _is_named_after_its_source(test) and not _is_a_journey(test)]
-    assert [str(test.relative_to(ROOT)) for test in others] == []
+    rule = "name each test_<module or room>.py, or test_<module or room>_<topic>.py, after what is in the same folder"
+    assert [str(test.relative_to(ROOT)) for test in others] == [], rule
 
 
 def test_every_journey_is_one() -> None:

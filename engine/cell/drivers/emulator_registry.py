@@ -13,7 +13,7 @@ from engine.cell.drivers.driver import DriverOptions
 from engine.document import StrictModel
 from engine.errors import FlexcellError, RegistryError
 from engine.registry import load_factory, registered_names
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 EMULATORS = "flexcell.emulators"
 

@@ -15,7 +15,7 @@ from engine.document.entries_document import Entries, EntriesDocument, load_entr
 from engine.document.robot_spec import RobotSpec
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _PART_FRAME = "part"
 """The frame of the part that a pose is used for."""

@@ -9,7 +9,7 @@ from engine.check.finding import Finding, new_finding
 from engine.document.cell import Cell
 from engine.errors import CellError, DocumentError, Position, RegistryError
 from engine.registry import DRIVERS, registered_names
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def check_drivers(cell: Cell) -> Iterator[Finding]:

@@ -15,7 +15,7 @@ from engine.check.values.known_values import known_part
 from engine.check.values.parameter_checks import default_values, value_by_default
 from engine.document.expression.expression import Template
 from engine.errors import ExpressionError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Entries = Mapping[str, Collection[str]]
 """The names of the entries by kind: joints, pose, dmp, record."""

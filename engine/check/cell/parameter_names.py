@@ -14,7 +14,7 @@ from engine.document.behavior import Behavior
 from engine.document.expression.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.state_catalogue import Catalogue
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _NAMING = ("cell_name", "cell_label", "entry")
 _KEPT = (*_NAMING, "or")

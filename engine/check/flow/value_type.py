@@ -13,7 +13,7 @@ from msgspec import inspect
 
 from engine.document.expression.cel_environment import ValueType
 from engine.document.expression.cel_expression import as_text
-from engine.document.text.decoding import explain_validation_error
+from engine.wording.misfit import explain_misfit
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def describe_misfit(value: object, annotation: Any) -> str:
     try:
         msgspec.convert(value, cast("type[Any]", annotation))
     except msgspec.ValidationError as error:
-        return explain_validation_error(str(error))
+        return explain_misfit(error, annotation)
     return ""
 
 

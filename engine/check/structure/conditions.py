@@ -17,7 +17,7 @@ from engine.document.nodes.concurrency_condition import (
     preemptable,
     preempting,
 )
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 MAX_STEPS = 20_000
 _SHOWN = 3

@@ -8,7 +8,7 @@ from engine.cell.cell_names import all_kinds, is_kind
 from engine.check.analyzed_behavior import AnalyzedBehavior
 from engine.check.finding import Finding, new_finding
 from engine.document.parameter_spec import ParameterSpec
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _NUMERIC = ("number", "integer")
 

@@ -10,7 +10,7 @@ from engine.check.flow.key_reads import conditions
 from engine.document.count import whole_number
 from engine.document.expression.expression import Template
 from engine.errors import ExpressionError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _RESUME = ("rerun", "ask")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from engine.check.finding import Finding
 from engine.document.nodes.node_spec import NodeSpec
 from engine.document.state_catalogue import StateCatalogue
 from engine.errors import FlexcellError, ModuleNotAllowed
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def check_transitions(subject: AnalyzedBehavior) -> Iterator[Finding]:

@@ -10,10 +10,11 @@ from engine.check.finding import Finding
 from engine.check.structure.instant_loops import InstantOutcomes
 from engine.document.expression.expression import Template
 from engine.document.nodes.node_kind import SLOTS
-from engine.document.nodes.node_spec import TREE_OUTCOMES, CompositeSpec, NodeSpec, ParallelSpec
+from engine.document.nodes.node_spec import TREE_OUTCOMES, NodeSpec
+from engine.document.nodes.tree_composites import CompositeSpec, ParallelSpec
 from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def check_trees(subject: AnalyzedBehavior) -> Iterator[Finding]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any, cast
 
 import msgspec
@@ -14,14 +13,21 @@ from engine.check.flow.key_reads import assignments, conditions
 from engine.document.expression.expression import Template
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.signature import StateSignature
-from engine.document.text.decoding import explain_validation_error
 from engine.errors import ExpressionError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import Misfit, in_words, suggested_choices
+from engine.wording.suggestions import did_you_mean
 
 
-def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
-    """Find unknown parameters and keys, invalid values, and malformed expressions."""
-    defaults = default_values(subject)
+def check_parameters(
+    subject: AnalyzedBehavior, run_parameters: Mapping[str, object] | None = None
+) -> Iterator[Finding]:
+    """Find unknown parameters and keys, invalid values, and malformed expressions.
+
+    Args:
+        subject: The behavior.
+        run_parameters: The parameters of a run of it; others have their defaults.
+    """
+    defaults = {**default_values(subject), **(run_parameters or {})}
     for placed in subject.due:
         signature = subject.signature(placed.node)
         if signature is None:
@@ -67,7 +73,7 @@ def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
 
 
 def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, object]) -> tuple[bool, object]:
-    """Return whether a value is known with the defaults of all parameters, and the value."""
+    """Return whether a value is known with these parameters, and the value."""
     if isinstance(found, ExpressionError) or not found.names <= defaults.keys():
         return False, None
     try:
@@ -119,55 +125,43 @@ def _check_state(
             continue
         values[name] = value
         declared = signature.parameters[name]
-        complaint = _complaint(value, declared.type)
-        if complaint is not None:
+        misfit = _misfit(value, declared.type)
+        if misfit is not None:
             faults += 1
-            what, steps = complaint
+            what = in_words(misfit.what)
             constant = isinstance(found, Template) and found.constant
-            hint = str(declared.schema.get("description", "")) if constant else _DEFAULTS
-            shown = what if constant else f"{value!r}: {what}"
-            keys = ("with", name, *(steps if constant else ()))
+            choices = suggested_choices(declared.type, misfit.path, misfit.refused_choice)
+            hint = (choices or str(declared.schema.get("description", ""))) if constant else _WITH_PARAMETERS
+            shown = what if constant else f"{value!r}: {what}{f' ({choices})' if choices else ''}"
+            keys = ("with", name, *(misfit.path if constant else ()))
             yield subject.finding("bad-parameter", f"parameter `{name}`: {shown}", placed.path, *keys, hint=hint)
     if complete and not faults and len(values) == len(given):
         yield from _check_together(subject, placed, signature, values)
 
 
-_DEFAULTS = "this is the value with the default parameters of the behavior"
+_WITH_PARAMETERS = "this is the value with the parameters of the behavior"
 
 
 def _check_together(
     subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature, values: Mapping[str, object]
 ) -> Iterator[Finding]:
     """Find values that are valid alone but not together, such as two mutually exclusive parameters."""
-    complaint = _complaint(dict(values), signature.state, words=str)
-    if complaint is not None:
+    misfit = _misfit(dict(values), signature.state)
+    if misfit is not None:
         hint = f"see `flexcell states show {signature.name}`"
-        yield subject.finding("bad-parameter", complaint[0], placed.path, "with", hint=hint, at_key=True)
+        yield subject.finding("bad-parameter", misfit.what, placed.path, "with", hint=hint, at_key=True)
 
 
-def _complaint(
-    value: object, kind: Any, *, words: Callable[[str], str] = explain_validation_error
-) -> tuple[str, tuple[str | int, ...]] | None:
+def _misfit(value: object, kind: Any) -> Misfit | None:
     """Return what is wrong with a value and where inside it; None when it is valid."""
     try:
         msgspec.convert(value, cast("type[Any]", kind))
     except msgspec.ValidationError as error:
-        what, _, inner = str(error).partition(" - at ")
-        return words(what), _steps(inner)
+        return Misfit.of(str(error))
     except Exception:
         # The constructor of a custom state may raise anything; a run reports it.
         return None
     return None
-
-
-def _steps(inner: str) -> tuple[str | int, ...]:
-    """Return the keys in a msgspec path such as `$.xyz[1]`, as far as they are named."""
-    found: list[str | int] = []
-    for name, index in re.findall(r"\.([^.\[\]`]+)|\[(\d+|\.\.\.)\]", inner):
-        if index == "...":
-            break
-        found.append(name or int(index))
-    return tuple(found)
 
 
 def _check_behavior(
@@ -178,7 +172,7 @@ def _check_behavior(
         problem = declared[name].problem(value) if known and name in declared else None
         if problem:
             constant = isinstance(found, Template) and found.constant
-            hint = declared[name].description if constant else _DEFAULTS
+            hint = declared[name].description if constant else _WITH_PARAMETERS
             message = f"parameter `{name}`: {problem}"
             yield subject.finding("bad-parameter", message, placed.path, "with", name, hint=hint)
 

@@ -14,7 +14,7 @@ from engine.check.flow.key_reads import KeyRead, assignments
 from engine.check.flow.userdata_flow import DataFlow
 from engine.check.flow.witness_path import format_witness_path, witness_path
 from engine.document.nodes.node_spec import shared_keys
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _MOST_ROUTES = 100
 _SIDE_BY_SIDE = ("concurrency", "parallel")

@@ -29,7 +29,7 @@ from engine.runtime.history.resumable_state import ResumableState
 from engine.runtime.history.resume import read_history
 from engine.runtime.history.run_view import run_duration_s
 from engine.runtime.plan import new_plan
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200

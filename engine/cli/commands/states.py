@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import msgspec
 import typer
@@ -119,6 +119,9 @@ def description(key: KeySignature) -> str:
 def _alternatives(schema: Mapping[str, object]) -> str:
     if "$ref" in schema:
         return str(schema["$ref"]).rpartition("/")[2]
+    choices = schema.get("enum")
+    if isinstance(choices, list):
+        return ", ".join(msgspec.json.encode(each).decode() for each in cast("list[object]", choices))
     options = schema.get("anyOf")
     if isinstance(options, list):
         schemas = msgspec.convert(options, list[dict[str, object]])

@@ -19,8 +19,8 @@ from engine.errors import SkillFailed, StoreError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.skills.entries import EntryList, ListEntries
 from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, Role, StepKind, TaughtStep
-from engine.suggestions import did_you_mean
 from engine.teaching.proposal_service import propose_offline
+from engine.wording.suggestions import did_you_mean
 
 _KINDS: tuple[str, ...] = get_args(StepKind)
 _ROLES: tuple[str, ...] = get_args(Role)

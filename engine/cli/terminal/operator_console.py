@@ -22,7 +22,7 @@ from engine.runtime.history.event_texts import event_text
 from engine.runtime.plan import Plan
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
 _BEHAVIOR = "behavior"

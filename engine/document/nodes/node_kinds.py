@@ -18,15 +18,12 @@ from engine.document.nodes.decorator_spec import DecoratorSpec
 from engine.document.nodes.node_kind import KINDS, WRAPPERS, FormField
 from engine.document.nodes.node_spec import (
     TREE_KINDS,
-    CompositeSpec,
     ConcurrencySpec,
     ForEachSpec,
-    IfThenElseSpec,
     MachineSpec,
     NodeSpec,
-    ParallelSpec,
-    WhileDoElseSpec,
 )
+from engine.document.nodes.tree_composites import CompositeSpec, IfThenElseSpec, ParallelSpec, WhileDoElseSpec
 from engine.state import State
 
 

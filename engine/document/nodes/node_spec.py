@@ -33,6 +33,7 @@ from engine.document.nodes.node_kind import (
     derived_name,
 )
 from engine.document.nodes.node_shape import NodeShape, kind_keys
+from engine.document.nodes.tree_composites import CompositeSpec, IfThenElseSpec, ParallelSpec, WhileDoElseSpec
 from engine.document.text.decoding import StrictModel
 
 
@@ -161,46 +162,6 @@ class ForEachSpec(StrictModel, frozen=True, kw_only=True, rename={"item": "as"})
     userdata: dict[Key, object] = {}
 
 
-class CompositeSpec(StrictModel, frozen=True, kw_only=True):
-    """Children of a sequence or selector; with `memory` a completed child is not ticked again.
-
-    A plain list of children has memory.
-    """
-
-    children: Annotated[tuple[NodeSpec, ...], Meta(min_length=1, description="The children, at least one")]
-    memory: Annotated[bool, FormField("Memory", "A child that is done is not asked again")]
-
-
-class ParallelSpec(StrictModel, frozen=True, kw_only=True):
-    """Children ticked together; `policy` names the children that must succeed: `all`, `one`, or names.
-
-    With `synchronise` a child that has succeeded is not restarted while the others run.
-
-    With thresholds instead of a policy it succeeds when `success_count` children have succeeded (default: all) and
-    fails when `failure_count` have failed (default: 1) or success is impossible; ended children are not restarted.
-    """
-
-    children: Annotated[tuple[NodeSpec, ...], Meta(min_length=1, description="The children, at least one")]
-    policy: Annotated[
-        Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)],
-        FormField("Succeeds with", "`all`, `one`, or names of children as a list"),
-    ] = "all"
-    synchronise: Annotated[bool, FormField("Synchronise", "What has succeeded waits for the others")] = True
-    success_count: Annotated[
-        Annotated[int, Meta(ge=1, description="Number of children that must succeed")] | None,
-        FormField("Successes", "So many must succeed, instead of a policy"),
-    ] = None
-    failure_count: Annotated[
-        Annotated[int, Meta(ge=1, description="Number of children that must fail")] | None,
-        FormField("Failures", "So many must fail, 1 without"),
-    ] = None
-
-    @property
-    def counts(self) -> bool:
-        """Whether it has thresholds instead of a policy."""
-        return self.success_count is not None or self.failure_count is not None
-
-
 class InverterSpec(DecoratorSpec, frozen=True, kw_only=True):
     """Turns SUCCESS of its child into FAILURE and back."""
 
@@ -292,33 +253,6 @@ class StatusConditionSpec(DecoratorSpec, frozen=True, kw_only=True):
         return f"waits for {self.status}, but its child only ends with {ends}"
 
 
-class IfThenElseSpec(
-    StrictModel, frozen=True, kw_only=True, rename={"condition": "if", "body": "then", "otherwise": "else"}
-):
-    """Ticks `if` to its end once, then runs `then` after success or `else` after failure, with its status.
-
-    Without `else` it fails if `if` has failed.
-    """
-
-    condition: NodeSpec
-    body: NodeSpec
-    otherwise: NodeSpec | None = None
-
-
-class WhileDoElseSpec(
-    StrictModel, frozen=True, kw_only=True, rename={"condition": "while", "body": "do", "otherwise": "else"}
-):
-    """Runs `do` while `while` succeeds, `else` while it fails, with its status; without `else` it fails.
-
-    `while` is repeated in the meantime like a check in a composite without memory. When its status changes, the
-    active branch is halted and its clean-up awaited before the other branch starts.
-    """
-
-    condition: NodeSpec
-    body: NodeSpec
-    otherwise: NodeSpec | None = None
-
-
 TREE_OUTCOMES = ("success", "failure")
 GUARD_TARGETS = (*TREE_OUTCOMES, "skipped")
 """The targets of a guard in a tree; the parent passes over a skipped node."""
@@ -352,17 +286,17 @@ class NodeSpec(
     tree: NodeSpec | None = None
     foreach: ForEachSpec | None = None
     behavior: Reference | None = None
-    sequence: _Listed | CompositeSpec | None = None
-    selector: _Listed | CompositeSpec | None = None
-    parallel: _Listed | ParallelSpec | None = None
+    sequence: _Listed | CompositeSpec[NodeSpec] | None = None
+    selector: _Listed | CompositeSpec[NodeSpec] | None = None
+    parallel: _Listed | ParallelSpec[NodeSpec] | None = None
     inverter: InverterSpec | None = None
     one_shot: OneShotSpec | None = None
     repeat: RepeatSpec | None = None
     cooldown: CooldownSpec | None = None
     remap: RemapSpec | None = None
     condition: StatusConditionSpec | None = None
-    if_then_else: IfThenElseSpec | None = None
-    while_do_else: WhileDoElseSpec | None = None
+    if_then_else: IfThenElseSpec[NodeSpec] | None = None
+    while_do_else: WhileDoElseSpec[NodeSpec] | None = None
     behaviour: str | None = None
     every: Duration | None = None
     name: NodeName | None = None

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar, cast
 
 import msgspec
@@ -13,14 +12,12 @@ from msgspec import inspect
 from engine.document.text.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import Misfit, declared_in, in_words, suggested_choices, types_at
+from engine.wording.suggestions import did_you_mean
 
 T = TypeVar("T")
 
-_AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`key` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
-_NO_CHOICE = re.compile(r"Invalid enum value '(.*)'", re.DOTALL)
 _MISSING = re.compile(r"Object missing required field `(.*)`")
-_TYPES = {"object": "mapping", "array": "list", "str": "text", "float": "number", "int": "integer", "bool": "boolean"}
 
 
 class StrictModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -92,36 +89,16 @@ def _of_mistake(
 def _refusal(
     source: DocumentSource, kind: object, path: DataPath, complaint: str, *, of_key: bool = False
 ) -> DocumentError:
-    match = cast("re.Match[str]", _AT.match(complaint))
-    steps = re.findall(r"\.([^.\[\]]+)|\[(\d+)\]", match["path"] or "$")
-    path = (*path, *(name or int(index) for name, index in steps))
-    missing = _MISSING.fullmatch(match["what"])
+    misfit = Misfit.of(complaint)
+    path = (*path, *misfit.path)
+    missing = _MISSING.fullmatch(misfit.what)
     if missing:
         return DocumentError(f"the key `{missing[1]}` is missing", where=source.position(path, of_key=True))
     where = source.position(path, of_key=of_key)
     name = next((step for step in reversed(path) if isinstance(step, str)), None)
     subject = f"`{name}`: " if name is not None else ""
-    choice = _NO_CHOICE.fullmatch(match["what"])
-    hint = _advice(kind, path, of_key=of_key, given=choice[1] if choice else "")
-    return DocumentError(f"{subject}{explain_validation_error(match['what'])}", where=where, hint=hint)
-
-
-def explain_validation_error(what: str) -> str:
-    """Return a msgspec message with the type names of the document format."""
-
-    def types(match: re.Match[str]) -> str:
-        names = [_TYPES.get(name, name) for name in match[1].split(" | ")]
-        return " or ".join("nothing" if name == "null" else name for name in names)
-
-    text = re.sub(r"expected `str` matching regex .*", "not in the allowed form", what, flags=re.IGNORECASE | re.DOTALL)
-    text = re.sub(r"^Invalid enum value (.*)", r"there is no choice \1", text)
-    text = re.sub(r"`([a-z |]+)`", types, text)
-    return f"{text[:1].lower()}{text[1:]}"
-
-
-@cache
-def _type_of(kind: object) -> inspect.Type:
-    return inspect.type_info(kind)
+    hint = _advice(kind, path, of_key=of_key, refused=misfit.refused_choice)
+    return DocumentError(f"{subject}{in_words(misfit.what)}", where=where, hint=hint)
 
 
 def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
@@ -129,21 +106,19 @@ def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
     return tuple(name for struct in _structs_at(kind, path) for name in (f.encode_name for f in struct.fields))
 
 
-def _advice(kind: object, path: DataPath, *, of_key: bool, given: str) -> str | None:
-    """Return the hint of the model for the value (or the key) at `path`: its description, or the choices."""
+def _advice(kind: object, path: DataPath, *, of_key: bool, refused: str | None) -> str | None:
+    """Return the hint of the model for the value (or the key) at `path`: the choices, or its description."""
     if of_key:
-        mappings = [option for option in _types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
+        mappings = [option for option in types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
         return next((found for option in mappings if (found := _description([option.key_type]))), None)
-    described = _declared_at(kind, path)
-    choices = [str(v) for option in described if isinstance(option, inspect.LiteralType) for v in option.values]
-    return _description(described) or (did_you_mean(given, choices) if choices else None)
+    return suggested_choices(kind, path, refused) or _description(_declared_at(kind, path))
 
 
 def _declared_at(kind: object, path: DataPath) -> list[inspect.Type]:
     """Return the types declared at `path`, with their annotations."""
     if not path:
         return []
-    declared = [inner for container in _types_at(kind, path[:-1]) for inner in _inside(container, path[-1])]
+    declared = declared_in(types_at(kind, path[:-1]), path[-1])
     return [t for found in declared for t in (found.types if isinstance(found, inspect.UnionType) else (found,))]
 
 
@@ -156,30 +131,4 @@ def _description(options: Iterable[inspect.Type]) -> str | None:
 
 
 def _structs_at(kind: object, path: DataPath) -> list[inspect.StructType]:
-    return [option for option in _types_at(kind, path) if isinstance(option, inspect.StructType)]
-
-
-def _types_at(kind: object, path: DataPath) -> list[inspect.Type]:
-    here: list[inspect.Type] = list(_options(_type_of(kind)))
-    for step in path:
-        here = [option for container in here for inner in _inside(container, step) for option in _options(inner)]
-    return here
-
-
-def _options(kind: inspect.Type) -> Iterator[inspect.Type]:
-    if isinstance(kind, inspect.Metadata):
-        yield from _options(kind.type)
-    elif isinstance(kind, inspect.UnionType):
-        for option in kind.types:
-            yield from _options(option)
-    else:
-        yield kind
-
-
-def _inside(kind: inspect.Type, step: str | int) -> Iterator[inspect.Type]:
-    if isinstance(kind, inspect.StructType):
-        yield from (f.type for f in kind.fields if f.encode_name == step)
-    elif isinstance(kind, inspect.DictType):
-        yield kind.value_type
-    elif isinstance(kind, inspect.VarTupleType | inspect.ListType):
-        yield kind.item_type
+    return [option for option in types_at(kind, path) if isinstance(option, inspect.StructType)]

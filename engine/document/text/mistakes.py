@@ -15,7 +15,7 @@ import msgspec
 from msgspec.structs import FieldInfo
 
 from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree
-from engine.suggestions import close_names
+from engine.wording.suggestions import close_names
 
 MAX_MISTAKES = 100
 """Maximum number of reported mistakes of one document."""

@@ -22,6 +22,7 @@ import yaml
 from engine.document.text.chunked_text import ChunkedText
 from engine.document.text.core_schema import plain_scalar, shorten_scalar
 from engine.errors import DocumentError, Position
+from engine.wording.misfit import DataPath
 
 MAX_BYTES = 2_000_000
 MAX_DEPTH = 64
@@ -29,7 +30,6 @@ MAX_NODES = 200_000
 MAX_EXPRESSIONS = 20_000
 MAX_EXPRESSION_TEXT = 100_000
 """Maximum total number of characters of texts with expressions."""
-DataPath = tuple[str | int, ...]
 
 _OPENING = ("while parsing a flow", "while scanning a quoted scalar")
 # A positive class, as a complement takes ten times as long to compile.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import cast
 
@@ -15,7 +15,7 @@ from engine.document.cell import Cell, Fixture, PartSpec
 from engine.document.entries_document import load_entries
 from engine.editing.adaptation.name_uses import NameUse
 from engine.errors import DocumentError, FlexcellError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Choices = Mapping[str, str]
 """The chosen names by `kind:name` or `name`; an empty one keeps the name as it is."""
@@ -78,15 +78,9 @@ class CellThings:
     def all(self, kind: str) -> tuple[str, ...]:
         """Return the names of a kind: things in the order of the cell document, others sorted."""
         document = self.cell.document
-        groups: Mapping[str, Iterable[str]] = {
-            "robot": document.robots,
-            "part": document.parts,
-            "fixture": document.fixtures,
-            "person": document.people,
-            "camera": document.cameras,
-        }
-        if kind in groups:
-            return tuple(groups[kind])
+        things = document.named_things
+        if kind in things:
+            return tuple(things[kind])
         if kind in _ORDER:
             return tuple(sorted(self.names.by_kind.get(kind, ())))
         return tuple(sorted(self.entries.get(kind, ())))

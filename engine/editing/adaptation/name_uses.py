@@ -167,15 +167,8 @@ def thing_kind(cell: Cell, needs: str, name: str) -> str:
         return needs
     if "/" in name:
         return "link"
-    groups: Mapping[str, Mapping[str, object]] = {
-        "robot": document.robots,
-        "part": document.parts,
-        "fixture": document.fixtures,
-        "person": document.people,
-        "camera": document.cameras,
-    }
     own = {"detector": "camera", "robot": "robot", **dict.fromkeys(tool_kinds(), "robot")}.get(needs)
-    return next((kind for kind, names in groups.items() if name in names and own in (None, kind)), "")
+    return next((kind for kind, names in document.named_things.items() if name in names and own in (None, kind)), "")
 
 
 def _owner(behavior: Behavior, node: NodeSpec, says: Annotations) -> object:

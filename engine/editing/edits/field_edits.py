@@ -12,13 +12,13 @@ from engine.document.behavior import BehaviorDocument
 from engine.document.nodes.node_kind import GROUPS, NAMED, SLOTS
 from engine.document.nodes.node_kinds import NODE_KINDS
 from engine.document.nodes.node_spec import NodeSpec
-from engine.document.text.decoding import explain_validation_error
 from engine.editing.edits.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
 from engine.editing.edits.edit_session import EditSession, assign_child_roles, named_children, remove_entry
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.node_matching import graft
 from engine.editing.text.outline import NodeRef, Plain
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 _OF_NODES = frozenset(
     ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
@@ -237,9 +237,8 @@ def _require(model: type[msgspec.Struct], key: str, value: object) -> None:
     try:
         msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
-        raise EditRefused(
-            f"`{key}`: {explain_validation_error(str(error))}", hint=f"given: {json.dumps(value, default=str)[:80]}"
-        ) from None
+        given = json.dumps(value, default=str)[:80]
+        raise EditRefused(explain_misfit(error, kind, key=key), hint=f"given: {given}") from None
 
 
 def _insert_in_order(mapping: Plain, key: str, value: object, order: tuple[str, ...]) -> None:

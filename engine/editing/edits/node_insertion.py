@@ -19,7 +19,7 @@ from engine.editing.text.outline import NodeRef, Plain, kind_of, own_name, trans
 from engine.editing.text.text_rewriter import TextRewriter, WritePosition
 from engine.editing.text.yaml_style import key_text
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _RUNNING = ("state", "behavior", "behaviour")
 _STEP_PX = 40

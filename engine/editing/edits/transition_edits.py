@@ -9,7 +9,7 @@ from engine.editing.edits.edit import AutoConnect, ClearTransition, SetInitial, 
 from engine.editing.edits.edit_session import EditSession
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.outline import NodeRef, Plain
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 def set_transition(session: EditSession, edit: SetTransition) -> None:

@@ -18,7 +18,7 @@ from engine.editing.edits.type_losses import LossRecord, UnacceptedLosses
 from engine.editing.edits.type_signature import TypeSignature, type_signature
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.outline import NodeRef, Plain
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _LEAVES = ("state", "behavior")
 _OF_LEAVES = ("with", "in", "out")

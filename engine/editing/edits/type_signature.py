@@ -10,11 +10,11 @@ import msgspec
 from engine.check.analyzed_behavior import template
 from engine.document.expression.expression import Template
 from engine.document.loader import load_behavior
-from engine.document.text.decoding import explain_validation_error
 from engine.editing.project_context import ProjectContext
 from engine.editing.text.draft import EditRefused
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 _WORDS = {"with": "parameter", "in": "input key", "out": "output key"}
 ValueProblem = Callable[[object], "str | None"]
@@ -65,7 +65,7 @@ def _by_type(declared: object) -> ValueProblem:
         try:
             msgspec.convert(value, declared)  # pyright: ignore[reportArgumentType, reportCallIssue]
         except msgspec.ValidationError as error:
-            return explain_validation_error(str(error))
+            return explain_misfit(error, declared)
         except Exception:
             # The constructor of a custom state may raise anything; a run reports it.
             return None

@@ -10,7 +10,7 @@ import msgspec
 from engine.document.nodes.node_kind import GROUPS, KINDS, NAMED, SLOTS, WRAPPERS, derived_name, numbered
 from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.text.draft import EditRefused
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 Plain = dict[str, object]
 _PLAIN_KINDS = (*KINDS, *TREE_KINDS)

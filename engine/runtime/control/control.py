@@ -22,7 +22,7 @@ from engine.runtime.scheduling.hold import BranchHolds
 from engine.runtime.scheduling.settlement import Settlement
 from engine.runtime.userdata.active_scopes import ActiveScopes
 from engine.runtime.userdata.userdata_value import plain_value
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 LossPolicy = Literal["hold", "continue", "stop"]
 

@@ -18,7 +18,7 @@ from engine.runtime.nodes.machine import Machine
 from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.priority import Priority
 from engine.runtime.plan import Plan
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ LOG_LINES = 1000
 
 
 class LiveRunChange(msgspec.Struct, frozen=True, kw_only=True):
-    """What one event changed: the changed nodes, the line of the log, whether what the run waits for may differ."""
+    """What one event changed: the changed nodes, the line of the log, whether its `RunView` may differ."""
 
     nodes: dict[str, NodeLive]
     line: LogLine

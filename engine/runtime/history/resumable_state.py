@@ -44,7 +44,7 @@ from engine.runtime.record.node_checkpoint import NodeCheckpoint
 from engine.runtime.record.node_exit import guard_closed_cause
 from engine.runtime.record.tree_event import TreeEvent
 from engine.runtime.userdata.append_only_lists import AppendOnlyLists
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 class ResumableState(RunStatePart):

@@ -22,7 +22,7 @@ from engine.runtime.nodes.node import Node
 from engine.runtime.nodes.substitute_work import SUBSTITUTE
 from engine.runtime.plan import Plan
 from engine.runtime.record.node_checkpoint import NodeCheckpoint
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 RERUN, ASK = "rerun", "ask"
 _NEEDS_ENTRY = ("behavior", "foreach", "tree")

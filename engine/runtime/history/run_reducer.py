@@ -237,7 +237,7 @@ class RunReducer(RunStatePart):
         self._nodes[event.path] = msgspec.structs.replace(self.state.node(event.path), plan=line)
 
     def status_changed(self, event: StatusChanged) -> None:
-        """Apply a tick status; composites and decorators have no visits of their own, leaves keep their outcome."""
+        """Apply a tick status; those of composites and decorators are their visits, leaves keep their outcome."""
         path = event.path
         node = self.state.node(path)
         self._step = NodeStep(kind="ticked", path=path, name=event.status, before=node)

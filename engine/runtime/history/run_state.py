@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy as shallow_copy
 from typing import Literal
 
 import msgspec
@@ -68,7 +69,7 @@ class NodeStep(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 class RunStateChange(msgspec.Struct, frozen=True, kw_only=True):
     """What one event changed: the changed nodes as they are now, and the step of the node that it is about.
 
-    `run_changed` tells that what the run waits for may have changed.
+    `run_changed` tells that the line of the run in lists (`RunView`) may have changed.
     """
 
     nodes: dict[str, NodeLive]
@@ -125,12 +126,7 @@ class RunState:
 
     def copy(self) -> RunState:
         """Return an independent copy."""
-        copied = RunState(self.run)
-        copied.seq, copied.time_s, copied.real_time = self.seq, self.time_s, self.real_time
-        copied.seed, copied.document, copied.parameters = self.seed, self.document, self.parameters
-        copied.end, copied.paused, copied.autonomy = self.end, self.paused, self.autonomy
-        copied.stepping_back = self.stepping_back
+        copied = shallow_copy(self)
         copied.locks, copied.nodes, copied.active = dict(self.locks), dict(self.nodes), dict(self.active)
         copied.exits = {path: dict(ends) for path, ends in self.exits.items()}
-        copied.containers = self.containers
         return copied

@@ -22,7 +22,7 @@ from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan
 from engine.runtime.record.leaf_activation import LeafActivation
 from engine.state import State, nothing_to_undo
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from msgspec import Meta
 from engine.document.expression.expression import compile_template
 from engine.errors import ExpressionError
 from engine.runtime.history.userdata_history import UserdataHistory
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 MAX_WATCHES = 40
 

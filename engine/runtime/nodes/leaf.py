@@ -24,7 +24,8 @@ from engine.runtime.record.leaf_activation import LeafActivation
 from engine.runtime.record.nonfinite import encode_nonfinite
 from engine.runtime.userdata.userdata import Scope
 from engine.state import ActivationRecord, Context, Outcome, State
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,8 +170,9 @@ class Leaf:
             try:
                 return msgspec.convert(given, self.state)
             except msgspec.ValidationError as error:
+                what = explain_misfit(error, self.state)
                 raise StateError(
-                    f"the parameters of {self.signature.name} do not fit: {error}", where=self.position
+                    f"the parameters of {self.signature.name} do not fit: {what}", where=self.position
                 ) from error
 
     def _inputs(self, scope: Scope) -> Iterator[tuple[str, object]]:
@@ -181,8 +183,9 @@ class Leaf:
                 try:
                     yield key, msgspec.convert(value, declared.type)
                 except msgspec.ValidationError as error:
+                    what = explain_misfit(error, declared.type)
                     raise UserdataError(
-                        f"userdata key {source!r} does not fit input {key!r} of {self.signature.name}: {error}",
+                        f"userdata key {source!r} does not fit input {key!r} of {self.signature.name}: {what}",
                         where=self.position,
                     ) from error
 

@@ -18,7 +18,7 @@ from engine.runtime.record.node_exit import NodeExit
 from engine.runtime.scheduling.wait_counters import BusyLoopCounter
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ from engine.runtime.nodes.node import Node, NodeWork
 from engine.runtime.nodes.node_entry import NodeEntry, WithoutEntry
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome, State
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 SUBSTITUTE = "substitute"
 """The kind of a substituted node in events and displays."""

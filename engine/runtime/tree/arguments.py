@@ -11,7 +11,8 @@ import msgspec
 from py_trees.behaviour import Behaviour
 
 from engine.errors import StateError
-from engine.suggestions import did_you_mean
+from engine.wording.misfit import explain_misfit
+from engine.wording.suggestions import did_you_mean
 
 
 def takes_name(kind: type[Behaviour]) -> bool:
@@ -46,10 +47,12 @@ def converted_arguments(kind: type[Behaviour], given: Mapping[str, Any], *, posi
         hints = {}
     arguments: dict[str, Any] = {}
     for name, value in given.items():
+        declared = hints.get(name, Any)
         try:
-            arguments[name] = msgspec.convert(value, hints.get(name, Any))
+            arguments[name] = msgspec.convert(value, declared)
         except msgspec.ValidationError as error:
-            raise StateError(f"argument `{name}` of {kind.__qualname__}: {error}", where=position) from error
+            what = explain_misfit(error, declared)
+            raise StateError(f"argument `{name}` of {kind.__qualname__}: {what}", where=position) from error
         except TypeError:
             # The type has no representation in documents; the constructor validates the value.
             arguments[name] = value

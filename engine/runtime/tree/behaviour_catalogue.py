@@ -15,7 +15,7 @@ from py_trees.behaviour import Behaviour
 
 from engine.document.state_catalogue import NO_CLASSES, Catalogue, module_of
 from engine.errors import RegistryError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _PY_TREES: Mapping[str, ModuleType] = {module.__name__: module for module in (py_trees.behaviours, py_trees.timers)}
 """Modules of py_trees, whose behaviours every document may name."""

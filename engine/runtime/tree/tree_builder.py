@@ -10,8 +10,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy, Status
 
-from engine.document.nodes import node_spec as nodes
 from engine.document.nodes.node_kind import SLOTS
+from engine.document.nodes.node_spec import GuardSpec, NodeSpec
+from engine.document.nodes.tree_composites import CompositeSpec, ParallelSpec
 from engine.errors import Cause, StateError
 from engine.event import NodeRetried
 from engine.runtime.nodes.execution import Execution
@@ -132,7 +133,7 @@ class TreeBuilder:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
         children = [self.build(child, place, caught=caught, passing=passing) for child in part.children]
         group = part.source.sequence or part.source.selector
-        memory = group.memory if isinstance(group, nodes.CompositeSpec) else True
+        memory = group.memory if isinstance(group, CompositeSpec) else True
         self.reactive = self.reactive or not memory
         if part.source.sequence is not None:
             return composites.Sequence(part.path, memory, children)
@@ -149,7 +150,7 @@ class TreeBuilder:
     def _parallel(self, part: TreeNode, place: ScopeAccess, *, caught: bool) -> Behaviour:
         places = {child.name: ScopeAccess(place.scope) for child in part.children}
         group = part.source.parallel
-        written = group if isinstance(group, nodes.ParallelSpec) else nodes.ParallelSpec(children=())
+        written = group if isinstance(group, ParallelSpec) else ParallelSpec[NodeSpec](children=())
         # Where one success or a count of successes decides, a skipped child is neither success nor failure.
         passing = Status.INVALID if written.counts or written.policy == "one" else Status.SUCCESS
         children = [self.build(child, places[child.name], caught=caught, passing=passing) for child in part.children]
@@ -203,7 +204,7 @@ class TreeBuilder:
             self.guards.append(node)
         return node
 
-    def _entry_guard(self, part: TreeNode, guard: nodes.GuardSpec, node: Behaviour, place: ScopeAccess) -> None:
+    def _entry_guard(self, part: TreeNode, guard: GuardSpec, node: Behaviour, place: ScopeAccess) -> None:
         entry_guard = EntryGuard(
             node,
             keys=guard_condition(part).names,

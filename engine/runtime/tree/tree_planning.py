@@ -21,7 +21,7 @@ from engine.runtime.tree.arguments import takes_name, wrong_arguments
 from engine.runtime.tree.behaviour_catalogue import find_behaviour
 from engine.runtime.tree.tree import Tree
 from engine.runtime.tree.tree_node import Assignment, ForeignPlan, LeafPlan, TreeNode
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 WHERE_NOTHING_WAKES_S = 0.1
 """Default tick period of a node that is RUNNING while nothing below it can wake the tree."""

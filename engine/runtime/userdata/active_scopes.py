@@ -7,7 +7,7 @@ from weakref import WeakValueDictionary
 
 from engine.errors import UserdataError
 from engine.runtime.userdata.userdata import Scope
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 
 class ActiveScopes:

@@ -16,7 +16,7 @@ from engine.document.expression.step_meter import METER
 from engine.errors import UserdataError
 from engine.runtime.userdata.append_only_lists import AppendOnlyLists
 from engine.runtime.userdata.userdata_value import is_immutable
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _MISSING = object()
 _COPY = 1.5

@@ -9,8 +9,8 @@ from typing import Literal
 import msgspec
 
 from engine.errors import FlexcellError
-from engine.suggestions import did_you_mean
 from engine.sweep.design.configuration import Configuration
+from engine.wording.suggestions import did_you_mean
 
 _NUMBERS = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?")
 TrialStatus = Literal["finished", "stopped", "errored", "refused", "crashed", "hung"]

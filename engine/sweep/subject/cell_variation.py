@@ -10,7 +10,7 @@ from engine.document.cell import Cell, cell_of_source
 from engine.document.simulated_devices import with_simulated_devices
 from engine.document.text.yaml_source import DataPath
 from engine.errors import DocumentError
-from engine.suggestions import did_you_mean
+from engine.wording.suggestions import did_you_mean
 
 _AXES = ("x_m", "y_m", "z_m")
 _YAW = 2

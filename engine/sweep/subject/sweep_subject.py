@@ -31,12 +31,12 @@ from engine.project.run_request import require_simulation
 from engine.registry import load_states
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.plan import Plan, new_plan
-from engine.suggestions import did_you_mean
 from engine.sweep.design.distributions import nominal
 from engine.sweep.subject.cell_files import model_files
 from engine.sweep.subject.cell_variation import varied_cell, written_value
 from engine.sweep.subject.source_files import SourceFile, with_imports
 from engine.sweep.subject.store_copy import entries_hash
+from engine.wording.suggestions import did_you_mean
 
 _PACKAGE = "flexcell"
 _HASH = 64

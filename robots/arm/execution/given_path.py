@@ -10,6 +10,7 @@ import numpy as np
 
 from engine.bus import ActiveGoal
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.begun_motion import canceled_by_errors
 from robots.arm.execution.given_path_motion import GivenPathMotion
 from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.motion_runner import MotionRunner
@@ -71,16 +72,17 @@ def monitored_motion(
     motion: Motion, path: AdmittedPath, runner: MotionRunner, *, guard: PathGuard, options: CollisionOptions
 ) -> Motion:
     """Return a motion of the port along a path, monitored and reserved for this arm."""
-    return GivenPathMotion(
-        motion,
-        path.trajectory,
-        path.rules,
-        guard=guard,
-        options=options,
-        reservation=PathReservation(runner, guard.workspace, made=True),
-        clock=runner.clock,
-        acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
-    )
+    with canceled_by_errors(motion):
+        return GivenPathMotion(
+            motion,
+            path.trajectory,
+            path.rules,
+            guard=guard,
+            options=options,
+            reservation=PathReservation(runner, guard.workspace, made=True),
+            clock=runner.clock,
+            acceleration_rad_s2=np.array(runner.model.limits.acceleration_rad_s2),
+        )
 
 
 @asynccontextmanager

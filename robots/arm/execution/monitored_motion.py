@@ -90,12 +90,12 @@ class MonitoredMotion(ABC):
 
     def _notice(self, names: frozenset[str]) -> None:
         """Handle a change of the scene."""
-        if self._arm in names and not self._halted:
-            self._reservation.update(self._passed_s)
         others = names - {self._arm}
         if others or not names:
-            self._note(others)
             self._changed.set()
+            self._note(others)
+        if self._arm in names and not self._halted:
+            self._reservation.update(self._passed_s)
 
     async def _run(self) -> MotionReport:
         try:

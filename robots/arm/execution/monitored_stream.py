@@ -44,7 +44,7 @@ class MonitoredStream:
         self._guard = guard
         self._ahead = ahead
         self._may_resume = may_resume
-        self._held = False
+        self._held = self._stands = False
         self.held_by = ""
         """Why the arm was brought to rest here; empty once it moves freely again."""
         self._end = asyncio.ensure_future(inner.report())
@@ -66,9 +66,10 @@ class MonitoredStream:
         await self._inner.hold()
 
     async def resume(self) -> None:
-        """Follow the stream again."""
+        """Follow the stream again; an arm that stands before a contact does so once it may."""
         self._held = False
-        await self._inner.resume()
+        if not self._stands:
+            await self._inner.resume()
 
     def cancel(self) -> None:
         """Request deceleration; `report` then returns CANCELED once at rest."""
@@ -117,12 +118,12 @@ class MonitoredStream:
 
     async def _stand_before(self, reason: str, may_resume: Callable[[], bool]) -> None:
         """Come to rest, and follow the stream again once it leads away."""
-        self.held_by = reason
+        self.held_by, self._stands = reason, True
         await self._inner.hold()
-        while not (self._held or self._end.done() or may_resume()):
+        while not self._end.done() and (self._held or not may_resume()):
             await self._period()
-        if not self._held:
-            await self._inner.resume()
+        self._stands = False
+        await self._inner.resume()
 
     async def _period(self) -> None:
         await asyncio.wait((self._end,), timeout=_PERIOD_S)

@@ -109,7 +109,7 @@ class MotionRunner:
 
     @property
     def stops(self) -> int:
-        """How often the arm has been stopped."""
+        """How often the arm has been stopped, or lost."""
         return self._stops
 
     @property
@@ -180,7 +180,7 @@ class MotionRunner:
         finally:
             self._planning -= 1
         if self._stops != stops:
-            raise GoalRejected("the arm was stopped during planning", where=handle.address)
+            raise GoalRejected("the arm was stopped or lost during planning", where=handle.address)
         self.accept(handle)
         return planned
 
@@ -276,6 +276,8 @@ class MotionRunner:
 
     def lose(self, reason: str) -> None:
         """Accept no goals until `find`: the device is not reachable."""
+        # What was planned before must not move the arm once it is found.
+        self._stops += 1
         self.status, self.lost_reason, self.error = DeviceStatus.FAULT, reason, reason
         self.changed()
 

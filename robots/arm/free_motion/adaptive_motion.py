@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from engine.errors import FlexcellError
 from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.execution.begun_motion import canceled_by_errors
 from robots.arm.execution.collision_prediction import PredictedCollision
 from robots.arm.execution.lookahead_path import PathReservation
 from robots.arm.execution.monitored_motion import MonitoredMotion
@@ -66,7 +67,7 @@ class AdaptiveMotion(MonitoredMotion):
         self._phase_waiters: list[asyncio.Future[None]] = []
         self._checking = False
         self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._attempts = 0
+        self._attempts, self._stops = 0, runner.stops
         self._detected_late = self._replan_failure = ""
         self.statistics = AdaptiveMotionReport()
         self.phase: MotionPhase = "moving"
@@ -192,8 +193,8 @@ class AdaptiveMotion(MonitoredMotion):
             self._waiting.end()
             return await self._cancel_inner() or MotionReport(end=MotionEnd.CANCELED)
         if self._inner is None:
-            reflex = self._runner.port.reflex_reason
-            return MotionReport(end=MotionEnd.FAILED, reason=reflex) if reflex else None
+            reason = self._lost_reason or self._runner.port.reflex_reason
+            return MotionReport(end=MotionEnd.FAILED, reason=reason) if reason else None
         if self._end is not None and self._end.done():
             self._waiting.end()
             return self._end.result()
@@ -269,6 +270,8 @@ class AdaptiveMotion(MonitoredMotion):
         self._inner = self._end = None
         if self._held or self._cancelled:
             return f"; {_HELD}"
+        if self._lost_reason:
+            return f"; {self._lost_reason}"
         if self._segment is not None:
             self.statistics.replans += 1
             _log.info("%s follows a new path", self._runner.name)
@@ -295,10 +298,20 @@ class AdaptiveMotion(MonitoredMotion):
     def _follow(self, segment: PathSegment) -> None:
         """Start to follow a path; raises RobotError if the arm rejects it."""
         runner = self._runner
-        self._monitor(runner.port.follow(segment.trajectory, tolerance=runner.tolerance), segment.trajectory)
-        self._segment = segment
-        self._detected_late = self._replan_failure = ""
-        self._listener.follows(segment)
+        motion = runner.port.follow(segment.trajectory, tolerance=runner.tolerance)
+        with canceled_by_errors(motion):
+            self._monitor(motion, segment.trajectory)
+            self._segment = segment
+            self._detected_late = self._replan_failure = ""
+            self._listener.follows(segment)
+
+    @property
+    def _lost_reason(self) -> str:
+        """Why the arm is lost, or that it was: an arm that is found again does not begin to move by itself."""
+        runner = self._runner
+        if runner.stops == self._stops:
+            return ""
+        return runner.lost_reason or "the arm was stopped or lost meanwhile"
 
     @property
     def _cancelled(self) -> bool:

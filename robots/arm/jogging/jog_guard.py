@@ -84,6 +84,7 @@ class JogGuard:
         self._limit: _SpeedLimit | None = None
         self._recheck = asyncio.Event()
         self._monitoring: asyncio.Task[None] | None = None
+        self._failure = ""
         self.held_by = ""
 
     @property
@@ -120,6 +121,9 @@ class JogGuard:
 
     def bounded(self, commanded: Row) -> Row:
         """Return the velocity that the arm may be commanded now in place of `commanded`."""
+        if self._failure:
+            self.held_by = self._failure
+            return (0.0,) * len(commanded)
         self._commanded = np.array(commanded)
         fast, limit = float(np.linalg.norm(self._commanded)), self._limit
         if fast == 0.0:
@@ -133,6 +137,15 @@ class JogGuard:
         return tuple((self._commanded * min(1.0, limit.fastest / fast)).tolist())
 
     async def _monitor(self, again: Callable[[], None]) -> None:
+        try:
+            await self._look_ahead(again)
+        except Exception as error:
+            # Whatever fails here, the arm must not continue unmonitored.
+            _log.exception("%s: jog monitoring failed", self._runner.name)
+            self._failure = f"jog monitoring failed: {type(error).__name__}: {error}"
+            again()
+
+    async def _look_ahead(self, again: Callable[[], None]) -> None:
         while True:
             while not self._commanded.any():
                 # A key that was released at once leaves a request without a direction.

@@ -14,6 +14,7 @@ from engine.clock import Clock
 from engine.errors import GoalRejected, RobotError
 from engine.skills.axes import Axes
 from engine.skills.jogging import JogCommand, JogJoints, JogTool
+from robots.arm.execution.begun_motion import canceled_by_errors
 from robots.arm.execution.stream_deadline import StreamDeadline
 from robots.arm.execution.validate_numbers import are_numbers
 from robots.arm.jogging.jog_guard import JogGuard
@@ -83,12 +84,13 @@ class JogRun:
         """Drive `stream` from now on."""
         self._stream = stream
         self._deadline = StreamDeadline(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
-        self.look()
-        if self._presses.current is not None:
-            self._send()
-        self._handle.replaceable = self._replaceable and self._presses.current is None
-        if self._guard is not None:
-            self._guard.watch_ahead(self._send_again)
+        with canceled_by_errors(stream):
+            self.look()
+            if self._presses.current is not None:
+                self._send()
+            self._handle.replaceable = self._replaceable and self._presses.current is None
+            if self._guard is not None:
+                self._guard.watch_ahead(self._send_again)
         return stream
 
     @property

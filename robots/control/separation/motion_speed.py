@@ -33,10 +33,9 @@ class MotionSpeed:
     Args:
         generator: The motion.
         kinematics: An instance of its own.
-        position: Where the motion starts, (n,).
     """
 
-    def __init__(self, generator: MotionGenerator, *, kinematics: ArmKinematics, position: Array) -> None:
+    def __init__(self, generator: MotionGenerator, *, kinematics: ArmKinematics) -> None:
         self.generator = generator
         self._kinematics = kinematics
         limits = np.array(kinematics.limits.velocity_rad_s)
@@ -49,7 +48,7 @@ class MotionSpeed:
             self._rows = [(points[row], slopes[row]) for row in rows.tolist()]
             self.joints_rad_s: Array = np.abs(slopes).max(axis=0)
         else:
-            self._origins = [_added(kinematics, position, limits)]
+            self._origins = [_greatest(kinematics.link_lengths_m(), limits)]
             self.joints_rad_s = limits
 
     @property
@@ -72,7 +71,11 @@ class MotionSpeed:
         return float((ends + angular * extents).max())
 
 
-def _added(kinematics: ArmKinematics, position: Array, limits: Array) -> Array:
-    """Return the speeds of the links where the contributions of all joints at their limits point the same way."""
-    each = [kinematics.link_speeds(position, row) for row in np.diag(limits)]
-    return np.sum(each, axis=0)
+def _greatest(lengths_m: Array, limits_rad_s: Array) -> Array:
+    """Return speeds that no link exceeds in any configuration, as `ArmKinematics.link_speeds`.
+
+    The arm is as long as its links in a row, and all joints at their limits turn it the same way.
+    """
+    angular_rad_s = np.cumsum(limits_rad_s)
+    linear_m_s = np.concatenate(([0.0], np.cumsum(lengths_m * angular_rad_s[:-1])))
+    return np.column_stack((linear_m_s, angular_rad_s))

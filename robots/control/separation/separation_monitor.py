@@ -55,8 +55,8 @@ class SeparationMonitor:
         """Drop the measurement and the motion: the world was restored to another state."""
         self._measured, self._speed, self._table, self._share = None, None, None, 0.0
 
-    def permitted_share(self, step_s: float, generator: MotionGenerator | None, position: Array) -> float:
-        """Return the permitted share, 0 to 1, of the full pace of a motion at the set point `position` (n,)."""
+    def permitted_share(self, step_s: float, generator: MotionGenerator | None) -> float:
+        """Return the permitted share, 0 to 1, of the full pace of a motion."""
         self._since_s += step_s
         if generator is None:
             self._speed, self._table, self._share = None, None, 0.0
@@ -65,7 +65,7 @@ class SeparationMonitor:
             # Whoever guides the arm touches it.
             return 1.0
         if self._speed is None or self._speed.generator is not generator:
-            self._speed = MotionSpeed(generator, kinematics=self._kinematics, position=position)
+            self._speed = MotionSpeed(generator, kinematics=self._kinematics)
             self._table, self._share, self._has_moved = None, 0.0, False
         if not self._speed.known:
             self._speed.look()

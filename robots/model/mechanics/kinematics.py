@@ -94,6 +94,11 @@ class ArmKinematics:
         rows = [(float(np.linalg.norm(one.linear)), float(np.linalg.norm(one.angular))) for one in motions]
         return np.array(rows, dtype=np.float64)
 
+    def link_lengths_m(self) -> Array:
+        """Return the distance from the origin of each joint to that of the next one, (n - 1,)."""
+        placements = [self._solver.jointPlacements[joint].translation for joint in range(2, self._solver.njoints)]
+        return np.array([float(np.linalg.norm(xyz)) for xyz in placements], dtype=np.float64)
+
     def dexterity(self, joints: Array) -> float:
         """Return the distance to a singularity: the smallest singular value of the Jacobian.
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 
 from engine.messages.sensing import OccupancyGrid
+from robots.vision.occupancy.image_times import ImageTimes
 from robots.vision.occupancy.occupancy_source import Unsubscribe
 
 _log = logging.getLogger("flexcell.vision")
@@ -18,12 +19,14 @@ class LiveOccupancyMap:
     Args:
         now_s: Clock for the age of the map.
         fresh_s: Maximum age of a valid map.
+        periods_s: The regular time between two images of each camera, by name.
     """
 
-    def __init__(self, *, now_s: Callable[[], float], fresh_s: float) -> None:
+    def __init__(self, *, now_s: Callable[[], float], fresh_s: float, periods_s: Mapping[str, float]) -> None:
         self._now_s = now_s
         self._fresh_s = fresh_s
         self._looked_at_s = -math.inf
+        self._times = ImageTimes(periods_s)
         self._callbacks: list[Callable[[], None]] = []
         self._published: tuple[int, str, frozenset[str]] = (0, "", frozenset())
         self.latest: OccupancyGrid | None = None
@@ -39,6 +42,11 @@ class LiveOccupancyMap:
     def age_s(self) -> float:
         """Age of the latest images, infinite without any."""
         return self._now_s() - self._looked_at_s
+
+    @property
+    def confirmed_age_s(self) -> float:
+        """The time since which some camera has not shown what is there, as in `ImageTimes`; maybe infinite."""
+        return self._now_s() - self._times.confirmed_s
 
     @property
     def stale_reason(self) -> str:
@@ -62,8 +70,10 @@ class LiveOccupancyMap:
 
         return unsubscribe
 
-    def arrived(self, grid: OccupancyGrid, *, looked_at_s: float) -> bool:
-        """Set a new map of images taken at `looked_at_s`; return whether its voxels changed."""
+    def arrived(self, grid: OccupancyGrid, *, looked_at_s: float, cameras: Collection[str]) -> bool:
+        """Set a new map with images of `cameras`, taken at `looked_at_s`; return whether its voxels changed."""
+        for camera in cameras:
+            self._times.take(camera, looked_at_s)
         changed = self.latest is None or grid.revision != self.latest.revision
         if self.stale_reason:
             # A map becomes stale without notification; that it is valid again is still a change.
@@ -75,7 +85,12 @@ class LiveOccupancyMap:
     def outdated(self) -> None:
         """Invalidate the map until the next image."""
         self._looked_at_s = -math.inf
+        self.begins_anew()
         self.notify()
+
+    def begins_anew(self) -> None:
+        """Take note that the next map has nothing of the earlier images."""
+        self._times.forget()
 
     def lost(self, reason: str) -> None:
         """Set the reason why no more images arrive."""

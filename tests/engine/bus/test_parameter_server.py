@@ -13,7 +13,7 @@ def test_a_parameter_is_declared_once_with_a_value_of_its_type() -> None:
     parameters.declare("left/speed", float, 0.5, description="share of the limits")
     with pytest.raises(BusError, match="left/speed: this parameter is already declared"):
         parameters.declare("left/speed", int, 1)
-    with pytest.raises(BusError, match="Expected `float`, got `str`"):
+    with pytest.raises(BusError, match="expected number, got text"):
         parameters.declare("left/force", float, "much")
     assert parameters.listing() == (BusParameter("left/speed", float, 0.5, "share of the limits"),)
 

@@ -67,13 +67,14 @@ class SeparatedCell:
 
 
 @asynccontextmanager
-async def _opened(folder: Path, document: Cell = CELL) -> AsyncGenerator[SeparatedCell]:
+async def opened_cell(folder: Path, document: Cell = CELL) -> AsyncGenerator[SeparatedCell]:
+    """Open a cell with a store of its own."""
     async with OpenCell(document, store_path=str(folder / "store.db")) as cell:
         yield SeparatedCell(cell.bus)
 
 
 async def test_who_reaches_into_the_path_is_met_by_an_arm_at_rest_that_goes_on_afterwards(tmp_path: Path) -> None:
-    async with _opened(tmp_path) as cell:
+    async with opened_cell(tmp_path) as cell:
         assert (await cell.move(START).result()).status is GoalStatus.SUCCEEDED
         handle = cell.move(GOAL)
         await cell.until(lambda: cell.speed_rad_s > 0.2)
@@ -89,7 +90,7 @@ async def test_who_reaches_into_the_path_is_met_by_an_arm_at_rest_that_goes_on_a
 
 
 async def test_without_monitoring_the_same_reach_is_run_into(tmp_path: Path) -> None:
-    async with _opened(tmp_path, UNMONITORED) as cell:
+    async with opened_cell(tmp_path, UNMONITORED) as cell:
         await cell.move(START).result()
         handle = cell.move(GOAL)
         await cell.until(lambda: cell.speed_rad_s > 0.2)
@@ -99,7 +100,7 @@ async def test_without_monitoring_the_same_reach_is_run_into(tmp_path: Path) -> 
 
 
 async def test_a_covered_camera_stops_the_arm_with_the_reason(tmp_path: Path) -> None:
-    async with _opened(tmp_path) as cell:
+    async with opened_cell(tmp_path) as cell:
         await cell.move(START).result()
         handle = cell.move(GOAL)
         await cell.until(lambda: cell.speed_rad_s > 0.2)

@@ -26,20 +26,24 @@ export interface CellNow {
   readonly state: CellStateFrame | undefined
 }
 
-const GROUPS: readonly (readonly [string, readonly CellItem['kind'][]])[] = [
-  ['Robots', ['robot']],
-  ['Fixtures', ['fixture']],
-  ['Parts', ['part']],
-  ['Cameras', ['camera']],
-  ['People', ['person']],
-  ['World and store', ['world', 'occupancy', 'store']],
-]
+/** The group of each kind of item; a tool stands below the robot that carries it. */
+const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool'>, string>> = {
+  robot: 'Robots',
+  fixture: 'Fixtures',
+  part: 'Parts',
+  camera: 'Cameras',
+  person: 'People',
+  world: 'World and store',
+  occupancy: 'World and store',
+  store: 'World and store',
+}
+const GROUPS = [...new Set(Object.values(GROUP_OF))]
 const FRAMES = 'frames'
 
 /** The tree; what is empty has no group. `frames` are all frames of the cell by name, parts among them. */
 export function cellTree(items: readonly CellItem[], frames: readonly string[]): readonly CellNode[] {
-  const groups = GROUPS.map(([name, kinds]) => {
-    const own = items.filter((item) => kinds.includes(item.kind) && !item.owner)
+  const groups = GROUPS.map((name) => {
+    const own = items.filter((item) => !item.owner && item.kind !== 'tool' && GROUP_OF[item.kind] === name)
     return group(
       `group:${name}`,
       name,

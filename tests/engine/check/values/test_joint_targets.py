@@ -87,10 +87,10 @@ def test_the_waypoint_with_the_wrong_angle_is_named_at_its_place(tmp_path: Path)
     ("waypoints", "message"),
     [
         ("[]", "expected list of length >= 1"),
-        ("[{blend_m: 0.1}]", "give either joints or pose"),
+        ("[{blend_m: 0.1}]", "give either `joints` or `pose`"),
         ("[{joints: [0.1, 0.2], blend_m: -1}]", "expected number >= 0.0"),
-        ("[{joints: [0.1, 0.2], pose: {xyz: [0, 0, 1]}}]", "give either joints or pose"),
-        ("[{pose: {entry: home, xyz: [0, 0, 1]}}]", "give either entry or xyz"),
+        ("[{joints: [0.1, 0.2], pose: {xyz: [0, 0, 1]}}]", "give either `joints` or `pose`"),
+        ("[{pose: {entry: home, xyz: [0, 0, 1]}}]", "give either `entry` or `xyz`"),
         ("[[0.1, 0.2]]", "expected mapping, got list"),
     ],
 )

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from engine.check import check_behavior, check_given
 from engine.check.cell.entry_references import entry_fields
-from engine.document import read_signature
+from engine.document import load_behavior, load_cell, read_signature
+from engine.registry import load_states
 from engine.state import State
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
@@ -21,6 +23,8 @@ root:
     states:
       line: {state: motion.MoveLinear, with: {robot: left, %s}, transitions: {reached: good, failed: bad}}
 """
+
+LAMP = LINE.replace("motion.MoveLinear", "io.SetOutput").replace("reached", "set")
 
 
 def test_values_that_do_not_go_together_are_found() -> None:
@@ -170,3 +174,19 @@ def test_an_entry_that_the_behavior_writes_itself_is_not_missing(tmp_path: Path)
     assert findings_in_files(tmp_path, main=main % "led", cell=CELL, entries=ENTRIES) == ()
     (found,) = findings_in_files(tmp_path, main=main % "lad", cell=CELL, entries=ENTRIES)
     assert (found.code, found.path, found.hint) == ("missing-entry", "root/learn", "did you mean led?")
+
+
+def test_the_parameters_of_a_run_are_tried_instead_of_the_defaults(tmp_path: Path) -> None:
+    """A run that would fail at a node far inside is refused at its start, with the value and what would fit."""
+    text = LAMP % "device: '${device}', value: true"
+    file = tmp_path / "main.yaml"
+    head = "flexcell: 1\nname: main\noutcomes: [good, bad]\nsuccess: [good]\n"
+    declared = "parameters: {device: {type: string, default: gripper}}\n"
+    file.write_text(head + declared + text, encoding="utf-8")
+    behavior, catalogue = load_behavior(file), load_states()
+    assert check_behavior(behavior, catalogue, parameters={"device": "linear_axis"}) == ()
+    (finding,) = check_behavior(behavior, catalogue, parameters={"device": "grippr"})
+    assert finding.message == "parameter `device`: 'grippr': there is no choice 'grippr' (did you mean gripper?)"
+    cell = load_cell(Path("behaviors/cells/dual_panda.yaml"))
+    found = check_given(behavior, catalogue, cell, {"device": "grippr"})
+    assert found[0].code == "bad-parameter"

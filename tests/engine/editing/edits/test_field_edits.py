@@ -89,7 +89,7 @@ def test_a_field_is_set_and_taken_away_again(field: str, value: object, line: st
 
 def test_a_field_of_another_kind_is_refused_in_words() -> None:
     edit = {"edit": "set_field", "path": "root/first", "field": "timeout", "value": {"after": "soon", "to": 3}}
-    assert "`timeout`: not in the allowed form" in refusal(TEXT, edit)
+    assert "`timeout.after`: not in the allowed form" in refusal(TEXT, edit)
     assert "has no `colour`" in refusal(TEXT, {**edit, "field": "colour"})
     assert "has no `memory`" in refusal(TEXT, {**edit, "field": "memory", "value": True})
     assert "nested too deeply" in refusal(TEXT, {**edit, "field": "in", "value": json.loads("[" * 60 + "]" * 60)})

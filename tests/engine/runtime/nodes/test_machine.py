@@ -109,7 +109,7 @@ def test_a_value_of_the_wrong_type_is_refused_at_the_reader() -> None:
               c: {state: test.Count, transitions: {more: good, full: good}}
     """)
     assert told.result.cause is not None
-    assert "'count' does not fit input 'count' of test.Count: Expected `int`, got `str`" in told.result.cause.message
+    assert "'count' does not fit input 'count' of test.Count: expected integer, got text" in told.result.cause.message
 
 
 def test_an_exception_ends_the_run_with_its_cause_and_place() -> None:

@@ -199,4 +199,4 @@ def test_what_cannot_be_made_is_refused_before_the_run(tree: str, message: str) 
 def test_an_argument_that_does_not_fit_is_an_error_that_names_it() -> None:
     """Before the constructor is called."""
     told = run_tree("behaviour: py_trees.behaviours:TickCounter\nwith: {duration: long, completion_status: SUCCESS}")
-    assert told.why[0].startswith("argument `duration` of TickCounter: Expected `int`, got `str`")
+    assert told.why[0].startswith("argument `duration` of TickCounter: expected integer, got text")

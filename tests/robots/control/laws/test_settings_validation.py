@@ -48,6 +48,7 @@ def test_what_the_arm_can_work_with_is_taken(settings: ControlSettings) -> None:
         ({"cartesian_stiffness": (3000.0, 3000.0, 1e5, 200.0, 200.0, 200.0)}, "along z cannot be 100000"),
         ({"cartesian_stiffness": (3000.0, 3000.0, 3000.0, 200.0, 200.0, 2000.0)}, "along rz cannot be 2000"),
         ({"nullspace_stiffness_nm_rad": -1.0}, "nullspace_stiffness_nm_rad cannot be -1"),
+        ({"nullspace_stiffness_nm_rad": 5000.0}, "nullspace_stiffness_nm_rad cannot be 5000 .at least 0 and at most "),
         ({"tool_xyz_m": (0.0, 0.0, math.inf)}, "tool_xyz_m cannot be inf"),
         ({"tool_xyzw": (0.0, 0.0, 0.0, 0.5)}, "is not a unit quaternion"),
         ({"tool_xyzw": (0.0, 0.0, 0.0, math.nan)}, "is not a unit quaternion"),
@@ -56,7 +57,8 @@ def test_what_the_arm_can_work_with_is_taken(settings: ControlSettings) -> None:
         ({"load_com_m": (0.0, 3.0, 0.0)}, "load_com_m cannot be 3"),
         ({"collision_torque_nm": (10.0,)}, "collision_torque_nm has 1 values"),
         ({"collision_torque_nm": (10.0,) * 6 + (-1.0,)}, "collision_torque_nm of panda_joint7 cannot be -1"),
-        ({"collision_force_n": 0.0}, "collision_force_n cannot be 0 .more than 0"),
+        ({"collision_torque_nm": (10.0,) * 6 + (0.0,)}, r"panda_joint7 cannot be 0 \(more than 0\)$"),
+        ({"collision_force_n": 0.0}, r"collision_force_n cannot be 0 \(more than 0\)$"),
         ({"speed_override": 0.0}, "speed_override cannot be 0 .at least 0.001 and at most 1"),
         ({"speed_override": 1.1}, "speed_override cannot be 1.1"),
     ],
@@ -65,6 +67,20 @@ def test_what_it_cannot_is_refused_in_words(change: dict[str, object], message: 
     with pytest.raises(RobotError, match=message) as caught:
         check(replace(WORKING, **change))
     assert caught.value.where == "left"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"nullspace_stiffness_nm_rad": 0.0},
+        {"nullspace_stiffness_nm_rad": 100.0},
+        {"collision_torque_nm": (0.5,) * 7},
+        {"collision_force_n": 0.5},
+    ],
+)
+def test_small_values_are_taken(change: dict[str, object]) -> None:
+    settings = replace(WORKING, **change)
+    assert check(settings) == settings
 
 
 def test_an_arm_too_weak_for_the_default_tool_stiffness_takes_settings_that_do_not_use_it() -> None:

@@ -44,7 +44,7 @@ class Motion:
 
     def share(self) -> float:
         """Return what the next period permits."""
-        return self.monitor.permitted_share(STEP_S, self.generator, home())
+        return self.monitor.permitted_share(STEP_S, self.generator)
 
     def measure(self, distance_m: float, *, age_s: float = 0.05) -> float:
         """Take a measurement; return what the next period permits."""
@@ -103,7 +103,7 @@ def test_the_distance_at_rest_permits_nothing_and_the_protective_distance_everyt
 
 def test_the_permitted_speed_is_that_of_the_fastest_point() -> None:
     motion = Motion()
-    speed = MotionSpeed(motion.generator, kinematics=panda_kinematics().twin(), position=home())
+    speed = MotionSpeed(motion.generator, kinematics=panda_kinematics().twin())
     while not speed.known:
         speed.look()
     fastest_m_s = speed.fastest_m_s(EXTENTS_M)
@@ -131,7 +131,7 @@ def test_a_longer_part_in_the_tool_permits_less_speed_at_once() -> None:
 def test_without_a_motion_or_after_a_restore_nothing_is_permitted_until_it_is_measured_again() -> None:
     motion = Motion()
     motion.permit(0.3)
-    assert motion.monitor.permitted_share(STEP_S, None, home()) == 0.0
+    assert motion.monitor.permitted_share(STEP_S, None) == 0.0
     motion.permit(0.3)
     motion.monitor.forget()
     assert [motion.share() for _ in range(20)] == [0.0] * 20
@@ -141,4 +141,4 @@ def test_without_a_motion_or_after_a_restore_nothing_is_permitted_until_it_is_me
 def test_who_guides_an_arm_touches_it() -> None:
     monitor = SeparationMonitor(RULE, kinematics=panda_kinematics().twin())
     guiding = GuidingGenerator(limits=LIMITS, start=home(), measured=home())
-    assert monitor.permitted_share(STEP_S, guiding, home()) == 1.0
+    assert monitor.permitted_share(STEP_S, guiding) == 1.0

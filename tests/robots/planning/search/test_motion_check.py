@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine.errors import CellError
 from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning_scene import CONTACT_M
 from robots.planning.request import PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import PlanningScene
+from robots.planning.search.motion_check import check_motion
+from robots.planning.search.path_check import SelfCollisionCache
 from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array, JointTrajectory
 from tests.robots.planning.motion_oracle import MotionOracle
@@ -28,8 +31,9 @@ def check(
     contact: ToolContact = "at_end",
     from_s: float = 0.0,
     occupancy: OccupancyGrid | None = None,
+    planner: ScenePlanner = PLANNER,
 ) -> PathCheck:
-    return PLANNER.check_path(
+    return planner.check_path(
         PathCheckRequest(scene=scene, arm=ARM, trajectory=way, from_s=from_s, tool_contact=contact, occupancy=occupancy)
     )
 
@@ -69,6 +73,18 @@ def test_the_tool_may_touch_at_the_end_and_no_deeper() -> None:
     assert blocked_s < DOWN.duration_s
 
 
+@pytest.mark.parametrize("deep_m", [0.8 * CONTACT_M, 0.95 * CONTACT_M, 1.02 * CONTACT_M, 1.1 * CONTACT_M])
+def test_a_contact_that_begins_before_the_end_section_is_refused(deep_m: float) -> None:
+    """Also where the row at which it begins is not looked at."""
+    scene = below(BENT, deep_m=deep_m)
+    checker, rows = ExactChecker(scene, ARM), DOWN.position_rad
+    ways_m = np.linalg.norm(np.diff([checker.tool_points(row) for row in rows], axis=0), axis=2)
+    # The way that the farthest moved point of the tool has left.
+    left_m = np.cumsum(ways_m[::-1], axis=0)[::-1].max(axis=1)
+    before = int(np.flatnonzero(left_m > CONTACT_M)[-1])
+    assert (check(DOWN, scene=scene).blocked_at_s is not None) is checker.in_collision(rows[before])
+
+
 def test_a_contact_of_the_tool_ends_the_path_of_a_guarded_move_and_one_of_another_link_does_not() -> None:
     found = check(DOWN, scene=below(BENT, deep_m=0.05), contact="ends_path")
     assert found.blocked_at_s is None
@@ -103,3 +119,58 @@ def test_only_what_is_still_to_come_counts() -> None:
     scene = PANDA.with_obstacles(WALL)
     assert check(WAY, scene=scene, from_s=WAY.duration_s - 0.05).blocked_at_s is None
     assert check(WAY, scene=scene, from_s=0.2).blocked_at_s == check(WAY, scene=scene).blocked_at_s
+
+
+THERE_AND_BACK = JointTrajectory(
+    dt_s=DOWN.dt_s,
+    position_rad=np.vstack((line(HOME, turned(3, 0.4)).position_rad, line(turned(3, 0.4), BENT).position_rad)),
+    velocity_rad_s=np.zeros((2 * len(DOWN.position_rad), 7)),
+)
+"""Away from what touches at the start, and then into it."""
+
+
+@pytest.mark.parametrize("from_s", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("way", "scene"),
+    [
+        (WAY, PANDA),
+        (WAY, PANDA.with_obstacles(WALL)),
+        (DOWN, below(BENT, deep_m=0.003)),
+        (DOWN, below(BENT, deep_m=3 * CONTACT_M)),
+        (THERE_AND_BACK, below(HOME, deep_m=0.002)),
+    ],
+    ids=["free", "wall", "placed", "pressed", "left and pressed"],
+)
+def test_what_gets_into_a_path_that_was_free_is_found_as_in_a_new_one(
+    way: JointTrajectory, scene: PlanningScene, from_s: float
+) -> None:
+    """Its self-collisions are not looked for again."""
+    known = ScenePlanner(check_s=2e-5)
+    assert check(way, planner=known) == PathCheck(blocked_at_s=None, pairs=(), looked_s=way.duration_s)
+    new = check(way, scene=scene, from_s=from_s, planner=ScenePlanner(check_s=2e-5))
+    assert check(way, scene=scene, from_s=from_s, planner=known) == new
+    assert (new.blocked_at_s is None) is (scene in (PANDA, below(BENT, deep_m=0.003)))
+
+
+def test_a_motion_of_another_arm_is_refused() -> None:
+    with pytest.raises(CellError, match="a path of 6 joints does not fit this arm"):
+        check(line(np.zeros(6), np.ones(6)))
+
+
+@pytest.mark.parametrize(("scene", "is_recorded"), [(PANDA, True), (PANDA.with_obstacles(WALL), False)])
+def test_only_a_motion_that_was_checked_to_its_end_is_recorded(scene: PlanningScene, *, is_recorded: bool) -> None:
+    known = SelfCollisionCache()
+    prepared = PLANNER.prepared(scene, ARM, margin_m=0.0, occupancy=None)
+    request = PathCheckRequest(scene=scene, arm=ARM, trajectory=WAY, from_s=0.5, tool_contact="never")
+    for _ in range(2):
+        found = check_motion(request, lambda: prepared.checker, prepared.problem, known)
+        assert (found.blocked_at_s is None) is is_recorded
+        assert known.are_free(scene, ARM, WAY, 0.5) is is_recorded
+        assert not known.are_free(scene, ARM, WAY, 0.49)
+
+
+def test_after_its_end_a_motion_is_blocked_at_its_end() -> None:
+    x, y, z = ExactChecker(PANDA, ARM).tool_points(WAY.position_rad[-1]).mean(axis=0).tolist()
+    scene = PANDA.with_obstacles(box("shelf", (0.04, 0.04, 0.04), (x, y, z)))
+    found = check(WAY, scene=scene, contact="never", from_s=99.0)
+    assert (found.blocked_at_s, found.looked_s) == (2.0, 2.0)

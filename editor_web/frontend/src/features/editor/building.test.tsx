@@ -1,9 +1,9 @@
 /** Building on the canvas: what is dropped stays, several nodes are changed at once, and the menu of a node. */
 import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
-import { live, server, session, show } from '../../../testing/page'
-import type { CatalogueBody, DocumentInfo, DocumentNode, Edit, EditAnswer } from '../../api/types'
-import { newHistory } from '../../document/editing/history'
+import { EDITS, edited, openDocument, sentEdits } from '../../../testing/openDocument'
+import { server, show } from '../../../testing/page'
+import type { CatalogueBody } from '../../api/types'
 import { machineNode, node } from '../../document/editing/testNodes'
 import { add, choose, moveInto } from './actions'
 import { draftFrom } from './apply'
@@ -13,42 +13,13 @@ import { EditHistory } from './EditHistory'
 import { Inspector } from './Inspector'
 import { NodeMenu } from './NodeMenu'
 import { align } from './placing'
-import { blank, setEditor, useEditor } from './store'
+import { setEditor, useEditor } from './store'
 
-const ID = 'behaviors/shift.yaml'
-const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfo = {
-  name: 'shift',
-  description: '',
-  cell: null,
-  parameters: {},
-  userdata: {},
-  outcomes: ['good'],
-  success: ['good'],
-}
 const GRASP = node('root/grasp', ['held', 'failed'], { state: 'test.Give', parameters: { speed: 0.2, force: 3 } })
 const PLACE = node('root/place', ['done'], { state: 'test.Take', parameters: { speed: 0.5 } })
 const INNER = machineNode('root/inner', 'one', [node('root/inner/one', ['done'])], [])
 const ROOT = machineNode('root', 'grasp', [GRASP, PLACE, INNER], [])
 const BOX = { width: 100, height: 50 }
-
-function edits(): Edit[][] {
-  return (server().bodies(EDITS) as { edits: Edit[] }[]).map((body) => body.edits)
-}
-
-function answered(root: DocumentNode): EditAnswer {
-  return {
-    hash: 'h2',
-    graph: root,
-    document: INFO,
-    findings: [],
-    checked: true,
-    text: `${Math.random()}`,
-    changed: [],
-    refused: null,
-    difference: null,
-  }
-}
 
 function parameter(name: string): object {
   return { name, schema: { type: 'number' }, required: false }
@@ -64,15 +35,7 @@ const CATALOGUE = {
 } as unknown as CatalogueBody
 
 beforeEach(() => {
-  server()
-    .on('GET /session', session())
-    .on(EDITS, answered(ROOT))
-    .on(`POST /documents/${ID}/findings`, [])
-    .on(`POST /documents/${ID}/targets`, { findings: [], dropped: false, problem: '' })
-  live()
-  useEditor.setState(blank(ID), true)
-  const draft = draftFrom({ hash: 'h1', graph: ROOT, findings: [], checked: true, document: INFO }, 'one', undefined)
-  setEditor({ phase: 'ready', base: { text: 'one', hash: 'h1' }, history: newHistory(draft), catalogue: CATALOGUE })
+  openDocument(ROOT, { catalogue: CATALOGUE })
   const boxes = new Map([
     ['root/grasp', { x: 10, y: 20, ...BOX }],
     ['root/place', { x: 40, y: 30, ...BOX }],
@@ -84,7 +47,7 @@ beforeEach(() => {
 
 it('leaves what is dropped where it was dropped, and its siblings where they are seen', async () => {
   await add({ kind: 'state', runs: 'test.Give', name: 'lift' }, { parent: 'root', at: { x: 222, y: 111 } })
-  expect(edits()).toEqual([
+  expect(sentEdits()).toEqual([
     [
       { edit: 'set_positions', positions: { 'root/grasp': [10, 20], 'root/place': [40, 30], 'root/inner': [400, 20] } },
       { edit: 'add_node', parent: 'root', kind: 'state', runs: 'test.Give', name: 'lift', position: [222, 111] },
@@ -94,7 +57,7 @@ it('leaves what is dropped where it was dropped, and its siblings where they are
 
 it('leaves what is dragged into another container where it was dropped in it', async () => {
   await moveInto(['root/place'], 'root/inner', new Map([['root/place', { x: 120, y: 60 }]]))
-  expect(edits()).toEqual([
+  expect(sentEdits()).toEqual([
     [
       { edit: 'move_nodes', paths: ['root/place'], parent: 'root/inner' },
       { edit: 'set_positions', positions: { 'root/inner/one': [8, 10], 'root/inner/place': [120, 60] } },
@@ -105,26 +68,26 @@ it('leaves what is dragged into another container where it was dropped in it', a
 it('aligns nodes without laying one on another', async () => {
   choose(['root/grasp', 'root/place'])
   await align('left')
-  expect(edits()[0]?.[0]).toMatchObject({ positions: { 'root/grasp': [10, 20], 'root/place': [10, 92] } })
+  expect(sentEdits()[0]?.[0]).toMatchObject({ positions: { 'root/grasp': [10, 20], 'root/place': [10, 92] } })
 })
 
 it('sets a parameter that several nodes have in all of them, disables them, and writes a note on all', async () => {
   const slow = ROOT.children.map((child) => ({ ...child, parameters: { ...child.parameters, speed: 0.3 } }))
-  server().on(EDITS, answered({ ...ROOT, children: slow }))
+  server().on(EDITS, edited({ ...ROOT, children: slow }))
   choose(['root/grasp', 'root/place'])
   const user = show(<Inspector />)
   expect(screen.queryByLabelText('force of all')).toBeNull()
   const speed = screen.getByLabelText('speed of all')
   expect(speed).toHaveAttribute('placeholder', 'different values')
   await user.type(speed, '0.3{Enter}')
-  await waitFor(() => expect(edits()).toHaveLength(1))
+  await waitFor(() => expect(sentEdits()).toHaveLength(1))
   await user.click(screen.getByRole('button', { name: 'Disable 2 nodes' }))
-  await waitFor(() => expect(edits()).toHaveLength(2))
+  await waitFor(() => expect(sentEdits()).toHaveLength(2))
   await user.type(screen.getByLabelText('The same note on all of them'), 'tune')
   await user.click(screen.getByRole('button', { name: 'Write note' }))
-  await waitFor(() => expect(edits()).toHaveLength(3))
+  await waitFor(() => expect(sentEdits()).toHaveLength(3))
   const both = ['root/grasp', 'root/place']
-  expect(edits()).toEqual([
+  expect(sentEdits()).toEqual([
     both.map((path) => ({ edit: 'set_parameter', path, name: 'speed', value: 0.3 })),
     both.map((path) => ({ edit: 'set_field', path, field: 'disabled', value: path === 'root/grasp' ? 'held' : 'done' })),
     both.map((path) => ({ edit: 'set_field', path, field: 'notes', value: 'tune' })),
@@ -134,7 +97,7 @@ it('sets a parameter that several nodes have in all of them, disables them, and 
 it('disables a node by its form, and says with which outcome it is passed over', async () => {
   const user = show(<DisabledForm node={{ ...GRASP, disabled: 'held' }} />)
   await user.selectOptions(screen.getByLabelText('Passes with'), 'failed')
-  await waitFor(() => expect(edits()).toEqual([[{ edit: 'set_field', path: 'root/grasp', field: 'disabled', value: 'failed' }]]))
+  await waitFor(() => expect(sentEdits()).toEqual([[{ edit: 'set_field', path: 'root/grasp', field: 'disabled', value: 'failed' }]]))
 })
 
 it('opens the menu of a node with what can be done with it', async () => {
@@ -144,7 +107,7 @@ it('opens the menu of a node with what can be done with it', async () => {
   const menu = await screen.findByRole('menu')
   expect(within(menu).getByRole('menuitem', { name: /^Rename/ })).toBeVisible()
   await user.click(within(menu).getByRole('menuitem', { name: /^Disable/ }))
-  await waitFor(() => expect(edits()).toEqual([[{ edit: 'set_field', path: 'root/grasp', field: 'disabled', value: 'held' }]]))
+  await waitFor(() => expect(sentEdits()).toEqual([[{ edit: 'set_field', path: 'root/grasp', field: 'disabled', value: 'held' }]]))
   expect(useEditor.getState().menu).toBeUndefined()
 })
 

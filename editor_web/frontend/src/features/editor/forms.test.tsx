@@ -1,74 +1,22 @@
 /** The forms of the editor: what each asks the server to change, on what the document is by then. */
 import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
-import { live, server, session, show } from '../../../testing/page'
+import { EDITS, edited, INFO, openDocument, sentEdits } from '../../../testing/openDocument'
+import { server, show } from '../../../testing/page'
 import { Refusal } from '../../../testing/server'
-import type { CatalogueBody, ConcurrencyCondition, DocumentInfo, DocumentNode, Edit, EditAnswer } from '../../api/types'
+import type { CatalogueBody, ConcurrencyCondition, DocumentInfo, DocumentNode } from '../../api/types'
 import { newHistory } from '../../document/editing/history'
 import { nodeOf } from '../../document/editing/model'
+import { node } from '../../document/editing/testNodes'
+import { nameOfPath } from '../../document/path'
 import { draftFrom } from './apply'
 import { DocumentForm } from './DocumentForm'
 import { PolicyForm } from './PolicyForm'
 import { RulesForm } from './RulesForm'
-import { blank, rootOf, setEditor, useEditor } from './store'
+import { rootOf, setEditor, useEditor } from './store'
 
-const ID = 'behaviors/shift.yaml'
-const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfo = {
-  name: 'shift',
-  description: '',
-  cell: null,
-  parameters: {},
-  userdata: {},
-  outcomes: ['good', 'bad'],
-  success: ['good'],
-}
-
-function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
-  const name = path.split('/').at(-1) ?? path
-  return {
-    path,
-    name,
-    kind: 'state',
-    icon: 'state',
-    title: 'test.Give',
-    outcomes: ['a', 'b', 'c'],
-    children: [],
-    transitions: [],
-    initial: null,
-    conditions: [],
-    label: name,
-    role: '',
-    description: '',
-    line: 1,
-    column: 1,
-    end_line: 1,
-    state: 'test.Give',
-    reference: null,
-    document: null,
-    parameters: {},
-    inputs: {},
-    outputs: {},
-    targets: {},
-    exits: [],
-    autonomy: {},
-    timeout: null,
-    retry: null,
-    guard: null,
-    post: null,
-    on_error: null,
-    resume: null,
-    success: [],
-    every: null,
-    notes: '',
-    position: null,
-    rules: [],
-    otherwise: null,
-    userdata: {},
-    settings: {},
-    disabled: false,
-    ...told,
-  }
+function part(path: string, more: Partial<DocumentNode> = {}): DocumentNode {
+  return node(path, ['a', 'b', 'c'], { title: 'test.Give', label: nameOfPath(path), state: 'test.Give', ...more })
 }
 
 function rule(outcome: string, when: ConcurrencyCondition['when'], told: Partial<ConcurrencyCondition> = {}): ConcurrencyCondition {
@@ -88,31 +36,12 @@ const LOOK = part('root/watch/look')
 const WATCH = part('root/watch', { kind: 'sequence', state: null, children: [LOOK], settings: { memory: false } })
 const ROOT = part('root', { kind: 'machine', state: null, outcomes: ['good', 'bad'], children: [SET, BOTH, WATCH], initial: 'set' })
 
-/** The document with other rules, as the server answers after an edit. */
-function answered(root: DocumentNode): EditAnswer {
-  return {
-    hash: 'h2',
-    graph: root,
-    document: INFO,
-    findings: [],
-    checked: true,
-    text: `${Math.random()}`,
-    changed: [],
-    refused: null,
-    difference: null,
-  }
-}
-
 function Form({ path }: { readonly path: string }) {
   const root = useEditor(rootOf)
-  const node = nodeOf(root, path)
+  const shown = nodeOf(root, path)
   const parent = nodeOf(root, path.split('/').slice(0, -1).join('/'))
-  if (!node) return null
-  return node.rules.length > 0 ? <RulesForm node={node} /> : <PolicyForm node={node} parent={parent} />
-}
-
-function edits(): Edit[] {
-  return (server().bodies(EDITS) as { edits: Edit[] }[]).flatMap((body) => body.edits)
+  if (!shown) return null
+  return shown.rules.length > 0 ? <RulesForm node={shown} /> : <PolicyForm node={shown} parent={parent} />
 }
 
 function rows(): string[] {
@@ -121,32 +50,24 @@ function rows(): string[] {
     .map((each) => each.textContent ?? '')
 }
 
-beforeEach(() => {
-  server()
-    .on('GET /session', session())
-    .on(EDITS, answered(ROOT))
-    .on(`POST /documents/${ID}/findings`, [])
-    .on(`POST /documents/${ID}/targets`, { findings: [], dropped: false, problem: '' })
-  live()
-  useEditor.setState(blank(ID), true)
-  const draft = draftFrom({ hash: 'h1', graph: ROOT, findings: [], checked: true, document: INFO }, 'one', undefined)
-  setEditor({ phase: 'ready', base: { text: 'one', hash: 'h1' }, history: newHistory(draft) })
-})
+beforeEach(() => openDocument(ROOT))
 
 it('edits the rules of a concurrency as a table, a line for each rule, a column for each child', async () => {
   const user = show(<Form path="root/both" />)
   expect(rows()).toHaveLength(4)
   await user.selectOptions(screen.getByLabelText('right in rule 1'), 'b')
-  await waitFor(() => expect(edits()).toHaveLength(1))
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(1))
   const path = 'root/both'
   const conditions = (value: unknown) => ({ edit: 'set_field', path, field: 'conditions', value })
-  expect(edits()[0]).toEqual(conditions([{ finished: { left: 'a', right: 'b' } }, { odd: { left: 'b' } }, { odd: { right: 'b' } }]))
+  expect(sentEdits().flat()[0]).toEqual(
+    conditions([{ finished: { left: 'a', right: 'b' } }, { odd: { left: 'b' } }, { odd: { right: 'b' } }]),
+  )
   await user.selectOptions(screen.getByLabelText('How many in rule 1'), '1')
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
   await user.click(screen.getByRole('button', { name: 'Move rule 2 up' }))
-  await waitFor(() => expect(edits()).toHaveLength(4))
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(4))
   const [all, left, right] = [{ finished: { left: 'a', right: 'a' } }, { odd: { left: 'b' } }, { odd: { right: 'b' } }]
-  expect(edits().slice(1)).toEqual([
+  expect(sentEdits().flat().slice(1)).toEqual([
     conditions([{ finished: { left: 'a', right: 'a', at_least: 1 } }, left, right]),
     conditions([all, left]),
     conditions([left, all, right]),
@@ -158,12 +79,12 @@ it('keeps two changes of rules of which the second is made before the first is a
   server().on(EDITS, () => new Promise((resolve) => (answer = resolve)))
   const user = show(<Form path="root/both" />)
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
-  await waitFor(() => expect(edits()).toHaveLength(1))
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(1))
   await user.click(screen.getByRole('button', { name: 'Delete rule 2' }))
-  server().on(EDITS, answered(ROOT))
-  answer(answered({ ...ROOT, children: [SET, { ...BOTH, rules: RULES.slice(0, 2) }] }))
-  await waitFor(() => expect(edits()).toHaveLength(2))
-  expect(edits()[1]).toMatchObject({ value: [{ finished: { left: 'a', right: 'a' } }] })
+  server().on(EDITS, edited(ROOT))
+  answer(edited({ ...ROOT, children: [SET, { ...BOTH, rules: RULES.slice(0, 2) }] }))
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(2))
+  expect(sentEdits().flat()[1]).toMatchObject({ value: [{ finished: { left: 'a', right: 'a' } }] })
 })
 
 it('lets a rule preempt some branches while the others go on; then it has no outcome', async () => {
@@ -171,14 +92,14 @@ it('lets a rule preempt some branches while the others go on; then it has no out
     ...BOTH,
     rules: [RULES[0] ?? BOTH.rules[0], rule('', { left: 'b' }, { preempt: ['right'] })] as ConcurrencyCondition[],
   }
-  server().on(EDITS, answered({ ...ROOT, children: [SET, preempting] }))
+  server().on(EDITS, edited({ ...ROOT, children: [SET, preempting] }))
   const user = show(<Form path="root/both" />)
   const words = 'all: preempted by rule 2'
   await user.click(screen.getByLabelText(words))
   const choice = within(screen.getByLabelText(words).closest('details') ?? document.body)
   await user.click(choice.getByLabelText('right'))
-  await waitFor(() => expect(edits()[0]).toMatchObject({ field: 'conditions' }))
-  expect((edits()[0] as { value: unknown[] }).value[1]).toEqual({ preempt: ['right'], when: { left: 'b' } })
+  await waitFor(() => expect(sentEdits().flat()[0]).toMatchObject({ field: 'conditions' }))
+  expect((sentEdits().flat()[0] as { value: unknown[] }).value[1]).toEqual({ preempt: ['right'], when: { left: 'b' } })
   expect(await screen.findByLabelText('right: preempted by rule 2')).toHaveTextContent('right')
   expect(screen.queryByLabelText('Outcome of rule 2')).toBeNull()
 })
@@ -186,42 +107,42 @@ it('lets a rule preempt some branches while the others go on; then it has no out
 it('adds a rule of what is not said yet', async () => {
   const user = show(<Form path="root/both" />)
   await user.click(screen.getByRole('button', { name: 'Add a rule' }))
-  await waitFor(() => expect((edits()[0] as { value: unknown[] }).value[3]).toEqual({ failed: { left: 'c' } }))
+  await waitFor(() => expect((sentEdits().flat()[0] as { value: unknown[] }).value[3]).toEqual({ failed: { left: 'c' } }))
 })
 
 it('renames the outcome of a rule, and says what comes of none', async () => {
   const renamed = { ...BOTH, rules: RULES.map((each, at) => (at === 1 ? { ...each, outcome: 'uneven' } : each)) }
-  server().on(EDITS, answered({ ...ROOT, children: [SET, renamed, WATCH] }))
+  server().on(EDITS, edited({ ...ROOT, children: [SET, renamed, WATCH] }))
   const user = show(<Form path="root/both" />)
   await user.clear(screen.getByLabelText('Outcome of rule 2'))
   await user.type(screen.getByLabelText('Outcome of rule 2'), 'uneven{Enter}')
-  await waitFor(() => expect((edits()[0] as { value: unknown[] }).value[1]).toEqual({ uneven: { left: 'b' } }))
+  await waitFor(() => expect((sentEdits().flat()[0] as { value: unknown[] }).value[1]).toEqual({ uneven: { left: 'b' } }))
   await user.type(screen.getByLabelText('Outcome when no rule holds'), 'late{Enter}')
-  await waitFor(() => expect(edits()[1]).toEqual({ edit: 'set_field', path: 'root/both', field: 'otherwise', value: 'late' }))
+  await waitFor(() => expect(sentEdits().flat()[1]).toEqual({ edit: 'set_field', path: 'root/both', field: 'otherwise', value: 'late' }))
 })
 
 it('leads a timeout to the worst outcome at first, and takes it away with its time', async () => {
   const slow = { ...SET, timeout: { after: '30 s', to: 'bad' } }
-  server().on(EDITS, answered({ ...ROOT, children: [slow, BOTH, WATCH] }))
+  server().on(EDITS, edited({ ...ROOT, children: [slow, BOTH, WATCH] }))
   const user = show(<Form path="root/set" />)
   await user.click(screen.getByRole('button', { name: 'Guard, timeout, retry' }))
   await user.type(screen.getByRole('combobox', { name: 'Timeout' }), '30 s{Enter}')
   const timeout = (value: unknown) => ({ edit: 'set_field', path: 'root/set', field: 'timeout', value })
-  await waitFor(() => expect(edits()).toEqual([timeout({ to: 'bad', after: '30 s' })]))
+  await waitFor(() => expect(sentEdits().flat()).toEqual([timeout({ to: 'bad', after: '30 s' })]))
   expect(await screen.findByLabelText('Timeout target')).toHaveValue('bad')
   await user.clear(screen.getByRole('combobox', { name: 'Timeout' }))
   await user.type(screen.getByRole('combobox', { name: 'Timeout' }), '{Enter}')
-  await waitFor(() => expect(edits()[1]).toEqual(timeout(null)))
+  await waitFor(() => expect(sentEdits().flat()[1]).toEqual(timeout(null)))
 })
 
 it('sets retry and what is done after a crash', async () => {
-  server().on(EDITS, answered({ ...ROOT, children: [{ ...SET, retry: { times: 3 } }, BOTH, WATCH] }))
+  server().on(EDITS, edited({ ...ROOT, children: [{ ...SET, retry: { times: 3 } }, BOTH, WATCH] }))
   const user = show(<Form path="root/set" />)
   await user.click(screen.getByRole('button', { name: 'Guard, timeout, retry' }))
   await user.type(screen.getByRole('combobox', { name: 'Retry, times' }), '3{Enter}')
   await user.selectOptions(screen.getByLabelText('After a crash'), 'ask')
-  await waitFor(() => expect(edits()).toHaveLength(2))
-  expect(edits()).toMatchObject([
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(2))
+  expect(sentEdits().flat()).toMatchObject([
     { field: 'retry', value: { times: 3 } },
     { field: 'resume', value: 'ask' },
   ])
@@ -231,15 +152,15 @@ it('asks how often a check is asked again where the composite has no memory, and
   const user = show(<Form path="root/watch/look" />)
   await user.click(screen.getByRole('button', { name: 'Guard, timeout, retry' }))
   await user.type(screen.getByRole('combobox', { name: 'Ask again every' }), '200 ms{Enter}')
-  await waitFor(() => expect(edits()).toEqual([{ edit: 'set_field', path: 'root/watch/look', field: 'every', value: '200 ms' }]))
+  await waitFor(() => expect(sentEdits().flat()).toEqual([{ edit: 'set_field', path: 'root/watch/look', field: 'every', value: '200 ms' }]))
   const kept = { ...WATCH, settings: { memory: true } }
-  server().on(EDITS, answered({ ...ROOT, children: [SET, BOTH, kept] }))
+  server().on(EDITS, edited({ ...ROOT, children: [SET, BOTH, kept] }))
   await user.selectOptions(screen.getByLabelText('After a crash'), 'ask')
   await waitFor(() => expect(screen.queryByRole('combobox', { name: 'Ask again every' })).toBeNull())
 })
 
 it('says what the server refuses, and leaves the document as it was', async () => {
-  server().on(EDITS, { ...answered(ROOT), refused: { message: 'no such node', hint: 'load it again' } })
+  server().on(EDITS, { ...edited(ROOT), refused: { message: 'no such node', hint: 'load it again' } })
   const user = show(<Form path="root/both" />)
   await user.click(screen.getByRole('button', { name: 'Delete rule 3' }))
   await waitFor(() =>
@@ -274,9 +195,9 @@ it('declares what a text parameter names, in the place of what it named before',
   const kinds = within(kind).getAllByRole('option')
   expect(kinds.map((each) => each.textContent)).toEqual(['nothing of the cell', 'camera', 'robot', 'entry: joints'])
   await user.selectOptions(kind, 'robot')
-  await waitFor(() => expect(edits()).toHaveLength(1))
+  await waitFor(() => expect(sentEdits().flat()).toHaveLength(1))
   const arm = { type: 'string', default: 'left', cell_name: 'robot' }
-  expect(edits()[0]).toEqual({ edit: 'set_document', changes: { parameters: { arm, speed: { type: 'number', default: 1 } } } })
+  expect(sentEdits().flat()[0]).toEqual({ edit: 'set_document', changes: { parameters: { arm, speed: { type: 'number', default: 1 } } } })
 })
 
 it('offers the names that fit as the default of a parameter', async () => {

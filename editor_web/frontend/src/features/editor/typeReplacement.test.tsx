@@ -1,28 +1,16 @@
 /** Another type for nodes: at once where all is kept; else what is lost is shown, and lost only when it is accepted. */
 import { screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it } from 'vitest'
-import { live, server, session, show } from '../../../testing/page'
-import type { CatalogueBody, DocumentInfo, Edit, EditAnswer, TypeLoss } from '../../api/types'
-import { newHistory } from '../../document/editing/history'
+import { EDITS, edited, openDocument, sentEdits } from '../../../testing/openDocument'
+import { server, show } from '../../../testing/page'
+import type { CatalogueBody, TypeLoss } from '../../api/types'
 import { machineNode, node } from '../../document/editing/testNodes'
 import { choose } from './actions'
-import { draftFrom } from './apply'
 import { Palettes } from './Palettes'
 import { ReplaceDialog } from './ReplaceDialog'
-import { blank, editor, setEditor, useEditor } from './store'
+import { editor } from './store'
 import { openReplacePalette, replaceType } from './typeReplacement'
 
-const ID = 'behaviors/shift.yaml'
-const EDITS = `POST /documents/${ID}/edits`
-const INFO: DocumentInfo = {
-  name: 'shift',
-  description: '',
-  cell: null,
-  parameters: {},
-  userdata: {},
-  outcomes: ['good'],
-  success: ['good'],
-}
 const ROOT = machineNode(
   'root',
   'grasp',
@@ -31,42 +19,20 @@ const ROOT = machineNode(
 )
 const TAKE = { kind: 'state', runs: 'test.Take', name: 'take' }
 const LOSS: TypeLoss = { path: 'root/grasp', item: 'parameter `force`', value: '3', reason: '`test.Take` has no parameter `force`' }
-const DONE: EditAnswer = {
-  hash: 'h2',
-  graph: ROOT,
-  document: INFO,
-  findings: [],
-  checked: true,
-  text: 'two',
-  changed: ['root/grasp'],
-  refused: null,
-  difference: null,
-}
+const DONE = edited(ROOT, { text: 'two', changed: ['root/grasp'] })
 const REFUSED = { ...DONE, hash: 'h1', text: 'one', refused: { message: 'it loses', hint: '', index: 0, losses: [LOSS] } }
-
-function sent(): Edit[] {
-  return (server().bodies(EDITS) as { edits: Edit[] }[]).flatMap((body) => body.edits)
-}
 
 function state(name: string): object {
   return { name, doc: '', group: 'test', icon: 'state', outcomes: [], parameters: [], inputs: [], outputs: [] }
 }
 
 beforeEach(() => {
-  server()
-    .on('GET /session', session())
-    .on(EDITS, DONE)
-    .on(`POST /documents/${ID}/findings`, [])
-    .on(`POST /documents/${ID}/targets`, { findings: [], dropped: false, problem: '' })
-  live()
-  useEditor.setState(blank(ID), true)
-  const draft = draftFrom({ hash: 'h1', graph: ROOT, findings: [], checked: true, document: INFO }, 'one', undefined)
   const containers = [
     { kind: 'priority', title: 'Priority machine', doc: '', icon: 'shuffle', only_in_tree: false },
     { kind: 'selector', title: 'Selector', doc: '', icon: 'question', only_in_tree: true },
   ]
   const catalogue = { states: [state('test.Give'), state('test.Take')], behaviors: [], containers } as unknown as CatalogueBody
-  setEditor({ phase: 'ready', base: { text: 'one', hash: 'h1' }, history: newHistory(draft), catalogue })
+  openDocument(ROOT, { catalogue, answer: DONE })
 })
 
 it('offers what a node can be instead, and replaces it at once where nothing is lost', async () => {
@@ -77,7 +43,7 @@ it('offers what a node can be instead, and replaces it at once where nothing is 
   expect(names.filter((name) => name.includes('test.Give') || name.includes('Selector'))).toEqual([])
   await user.click(screen.getByRole('option', { name: /test\.Take/ }))
   await waitFor(() => expect(editor().history.at).toBe(1))
-  expect(sent()).toEqual([
+  expect(sentEdits().flat()).toEqual([
     { edit: 'replace_type', paths: ['root/grasp'], kind: 'state', runs: 'test.Take', accepted: [] },
     { edit: 'replace_type', paths: ['root/grasp'], kind: 'state', runs: 'test.Take', accepted: [] },
   ])
@@ -93,7 +59,7 @@ it('shows what is lost before it is lost, and sends what was shown', async () =>
   server().on(EDITS, DONE)
   await user.click(screen.getByRole('button', { name: 'Replace' }))
   await waitFor(() => expect(editor().history.at).toBe(1))
-  expect(sent().at(-1)).toMatchObject({ accepted: [LOSS] })
+  expect(sentEdits().flat().at(-1)).toMatchObject({ accepted: [LOSS] })
   expect(screen.queryByRole('dialog')).toBeNull()
 })
 
@@ -103,6 +69,6 @@ it('changes nothing when the losses are not accepted', async () => {
   await replaceType(['root/grasp'], TAKE)
   await user.click(await screen.findByRole('button', { name: 'Keep it' }))
   expect(screen.queryByRole('dialog')).toBeNull()
-  expect(sent()).toHaveLength(1)
+  expect(sentEdits().flat()).toHaveLength(1)
   expect(editor().history.at).toBe(0)
 })
