@@ -12,7 +12,7 @@ from typing import cast
 
 from engine.cell import ToolKind
 from engine.errors import CellError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 
 TOOL_KINDS: dict[str, str] = {
     "gripper": "robots.standard_tools.gripper_kind:GRIPPER",

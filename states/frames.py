@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine.errors import Cause, StateError
 from engine.messages import FramePoses, PartPoses, Pose
 from engine.state import Context
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 
 WORLD = "world"
 PARTS_TOPIC = "cell/parts"

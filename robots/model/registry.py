@@ -9,7 +9,7 @@ from pathlib import Path
 
 from engine.document import RobotSpec
 from engine.errors import CellError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.model.folder.composition import compose
 from robots.model.folder.model_folder import ROBOT_FILE, TOOL_FILE, load_arm, load_tool
 from robots.model.robot_model import RobotModel

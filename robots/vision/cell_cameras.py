@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from engine.document import CellDocument
 from engine.errors import CellError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.scene.sim_scene import SimScene
 from robots.sim.host.lockstep_host import LockstepHost
 from robots.sim.world.sim_world import SimWorld

@@ -19,7 +19,7 @@ from engine.messages.sensing import (
 )
 from engine.robot import DeviceStatus
 from engine.skills.simulated_world import CameraFault, SetCameraFault, SetCameraFaultResult
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
 from robots.sim.world.sim_world import SimWorld

@@ -10,7 +10,7 @@ import msgspec
 from engine.errors import SkillFailed
 from engine.messages.shapes import Obstacle, Solid
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.model.mechanics.link_names import link_names
 from robots.model.transform import RigidTransform
 from robots.planning.scene.planning_scene import AttachedPart, NamePair, PlanningScene, SceneArm

@@ -12,7 +12,7 @@ from engine.cause_chain import wrap_cause
 from engine.errors import Cause, MeasuredValue, StateError
 from engine.messages import FramePoses, PartPoses, Pose, Quaternion, Vector3
 from engine.state import Context, Outcome, State, nothing_to_undo
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from states.cell.part_orientation import Angle, ExpectedOrientation, orientation_fault, tilt_fault
 from states.frames import FRAMES_TOPIC, PARTS_TOPIC, measured_pose
 from states.scene.scene_parameter_types import PartName

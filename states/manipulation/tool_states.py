@@ -11,7 +11,7 @@ from msgspec import Meta
 from engine.cell import ToolKind, tool_kinds
 from engine.registry import installed_state
 from engine.state import State
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 
 ToolName = Annotated[
     str,

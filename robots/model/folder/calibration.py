@@ -17,7 +17,7 @@ import numpy as np
 
 from engine.document import StrictModel, decode_document, load_source
 from engine.errors import CellError, DocumentError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.model.folder.folder_document import CalibrationFormat
 from robots.model.urdf.urdf_tree import Element, joints_of, set_origin
 from robots.port import Array

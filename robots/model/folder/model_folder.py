@@ -11,7 +11,7 @@ import msgspec
 
 from engine.document import DataPath, DocumentSource, decode_document, load_source
 from engine.errors import CellError, DocumentError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.model.folder.folder_document import (
     CollisionPairs,
     FileReference,

@@ -14,7 +14,7 @@ import msgspec
 from engine.errors import CellError
 from engine.messages import Pose
 from engine.messages.shapes import AT_ORIGIN, Obstacle, Solid
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.scene.sim_scene import ArmPlacement
 
 NamePair = tuple[str, str]

@@ -13,7 +13,7 @@ import numpy as np
 
 from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning_scene import FARTHEST_M, CollisionReport, TouchingPair
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.model.robot_model import RobotModel
 from robots.planning.planner_names import FAST, PLANNERS, STOMP, UNAVAILABLE_PLANNERS
 from robots.planning.request import (

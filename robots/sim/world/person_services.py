@@ -8,7 +8,7 @@ from engine.bus import SkillBus
 from engine.errors import SkillFailed
 from engine.messages import Vector3
 from engine.skills.people import ContactCount, CountContacts, Reach, ReachResult, Withdraw
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.port import Array
 from robots.scene.sim_scene import PersonBody
 from robots.sim.commands.world_commands import MovePersonHand

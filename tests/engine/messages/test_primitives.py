@@ -67,8 +67,8 @@ def test_a_cartesian_dmp_survives_being_stored(dmp: CartDmp) -> None:
         ({"tasktrans": [2 * value for value in TURNED]}, "of tasktrans are not a rotation matrix"),
         ({"tasktrans": [-value for value in TURNED[:12]] + [0, 0, 0, 1]}, "tasktrans is a reflection"),
         ({"tasktrans": [*TURNED[:12], 0, 0, 1, 1]}, "the last row of tasktrans is not 0 0 0 1"),
-        ({"tau": 0}, "Expected `float` > 0.0"),
-        ({"sigma": [0.1, -0.1]}, "Expected `float` > 0.0"),
+        ({"tau": 0}, "expected number > 0.0"),
+        ({"sigma": [0.1, -0.1]}, "expected number > 0.0"),
         ({"w7": [1, 2]}, "w7"),
     ],
 )
