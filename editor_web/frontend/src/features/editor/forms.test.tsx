@@ -61,6 +61,7 @@ function part(path: string, told: Partial<DocumentNode> = {}): DocumentNode {
     success: [],
     every: null,
     notes: '',
+    canvas_notes: {},
     position: null,
     rules: [],
     otherwise: null,

@@ -3,6 +3,7 @@ import { FRAME_HEAD, pillWidth, portY, RULE_HEIGHT, rowsHeight, tableHeight } fr
 import type { Marking } from '../../document/editing/changes'
 import { isFailure, type EditNode } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
+import { linesOf, type CanvasNote, type NoteColour } from '../../document/editing/canvasNotes'
 import type { Box } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 import type { CanvasNode, CardNode, PillNode } from './elements'
@@ -20,6 +21,18 @@ export interface Palette {
   readonly failed: string
   readonly done: string
   readonly changed: string
+  readonly ink: string
+  /** Of free notes by their colour: the paper, and its edge. */
+  readonly yellow: string
+  readonly yellowEdge: string
+  readonly blue: string
+  readonly blueEdge: string
+  readonly green: string
+  readonly greenEdge: string
+  readonly pink: string
+  readonly pinkEdge: string
+  readonly grey: string
+  readonly greyEdge: string
 }
 
 /** The colours of the page, also when its theme is changed. */
@@ -35,6 +48,17 @@ export const OF_PAGE: Palette = {
   failed: 'var(--failed)',
   done: 'var(--done)',
   changed: 'var(--stopped)',
+  ink: 'var(--ink)',
+  yellow: 'var(--paper)',
+  yellowEdge: 'var(--paper-edge)',
+  blue: 'var(--note-blue)',
+  blueEdge: 'var(--note-blue-edge)',
+  green: 'var(--note-green)',
+  greenEdge: 'var(--note-green-edge)',
+  pink: 'var(--note-pink)',
+  pinkEdge: 'var(--note-pink-edge)',
+  grey: 'var(--note-grey)',
+  greyEdge: 'var(--note-grey-edge)',
 }
 
 const SANS = "'Inter Variable', Inter, system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
@@ -224,6 +248,29 @@ export function Rules({ node, box, palette }: { node: EditNode; box: Box; palett
       ))}
     </g>
   )
+}
+
+const NOTE_LINE = 16.2
+
+/** A free note, as much of its text as there is room for. */
+export function Paper({ note, box, palette }: { note: CanvasNote; box: Box; palette: Palette }) {
+  const [fill, stroke] = paperOf(note.colour, palette)
+  const lines = linesOf(note.text, Math.max(1, Math.floor((box.width - 20) / 6.2)))
+  const room = Math.max(1, Math.floor((box.height - 14) / NOTE_LINE))
+  return (
+    <g data-note>
+      <rect {...box} rx={4} style={{ fill, stroke, strokeWidth: 1 }} />
+      {lines.slice(0, room).map((line, index) => (
+        <text key={index} x={box.x + 11} y={box.y + 20 + index * NOTE_LINE} style={{ fontFamily: SANS, fontSize: 12, fill: palette.ink }}>
+          {index === room - 1 && lines.length > room ? `${line} …` : line}
+        </text>
+      ))}
+    </g>
+  )
+}
+
+function paperOf(colour: NoteColour, palette: Palette): readonly [string, string] {
+  return [palette[colour], palette[`${colour}Edge`]]
 }
 
 function fitted(words: string, characters: number): string {
