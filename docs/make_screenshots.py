@@ -37,7 +37,7 @@ OUT = ROOT / "docs" / "screenshots"
 LIMIT_MS = 240_000
 STILL_LIMIT_S = 180.0
 """Within which the 3D view must come to rest; without a graphics card it draws for seconds."""
-BETWEEN_SHOTS_MS = 1500
+BETWEEN_SHOTS_MS = 3000
 """Between two shots of the 3D view, so that what is on its way arrives: meshes come one by one after the canvas."""
 FEWEST_COLOURS = 200
 """A 3D view with fewer has drawn only its ground so far."""

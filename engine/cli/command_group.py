@@ -21,6 +21,7 @@ _IMPORT_PATHS = {
     "replay": "engine.cli.commands.replay:replay",
     "sweep": "engine.cli.commands.sweep:app",
     "export": "engine.cli.commands.export:export",
+    "picture": "engine.cli.commands.picture:picture",
     "serve": "engine.cli.commands.serve:serve",
     "login": "engine.cli.commands.login:login",
     "coverage": "engine.cli.commands.coverage:app",

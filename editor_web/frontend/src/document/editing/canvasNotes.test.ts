@@ -1,7 +1,18 @@
 /** Free notes: where they are, what changes them, and how their text is broken into lines. */
 import { expect, test } from 'vitest'
 import { arrange } from './arrange'
-import { linesOf, movedNote, newNote, noteId, noteBoxes, resizedNote, setCanvasNote, spokenNote, type CanvasNote } from './canvasNotes'
+import {
+  freePlace,
+  linesOf,
+  movedNote,
+  newNote,
+  noteId,
+  noteBoxes,
+  resizedNote,
+  setCanvasNote,
+  spokenNote,
+  type CanvasNote,
+} from './canvasNotes'
 import { areOfLayout, withLayout } from './layoutEdits'
 import { nodeOf } from './model'
 import { machineNode, node } from './testNodes'
@@ -49,6 +60,14 @@ test('a note is written into the graph at once and taken away, and means nothing
 test('it is moved and resized by whole pixels, and stays large enough to be seen', () => {
   expect(movedNote(NOTE, { x: 10.4, y: -10 }).position).toEqual([50, -130])
   expect(resizedNote(NOTE, { x: 10, y: -500 }).size).toEqual([210, 40])
+})
+
+test('a new one comes where it covers nothing, as near as can be', () => {
+  expect(freePlace({ x: 5, y: 5 }, [])).toEqual({ x: 5, y: 5 })
+  const wide = { x: -500, y: 0, width: 1000, height: 100 }
+  expect(freePlace({ x: 0, y: 60 }, [wide])).toEqual({ x: 0, y: 112 })
+  expect(freePlace({ x: 0, y: -10 }, [wide])).toEqual({ x: 0, y: -102 })
+  expect(freePlace({ x: 0, y: 60 }, [wide, { x: 0, y: 120, width: 10, height: 10 }, { ...wide, y: -200 }])).toEqual({ x: 0, y: 142 })
 })
 
 test('two people who add one each give them different names, and what it says is spoken', () => {

@@ -63,6 +63,34 @@ export function newNote(path: string, at: Point, random: () => number = Math.ran
   return { path, name, note: { text: '', position: corner(at.x, at.y), size: NEW_SIZE, colour: 'yellow' } }
 }
 
+const APART_PX = 12
+
+/** The place nearest to one where a new note covers nothing of what is drawn, and nothing covers it. */
+export function freePlace(at: Point, taken: readonly Box[]): Point {
+  const [width, height] = NEW_SIZE
+  const inTheWay = (place: Point) =>
+    taken.find(
+      (box) =>
+        box.x < place.x + width + APART_PX &&
+        box.x + box.width + APART_PX > place.x &&
+        box.y < place.y + height + APART_PX &&
+        box.y + box.height + APART_PX > place.y,
+    )
+  const past = (step: (box: Box, place: Point) => Point) => {
+    let place = at
+    for (let box = inTheWay(place); box; box = inTheWay(place)) place = step(box, place)
+    return place
+  }
+  const places = [
+    past((box, { x }) => ({ x, y: box.y + box.height + APART_PX })),
+    past((box, { x }) => ({ x, y: box.y - height - APART_PX })),
+    past((box, { y }) => ({ x: box.x + box.width + APART_PX, y })),
+    past((box, { y }) => ({ x: box.x - width - APART_PX, y })),
+  ]
+  const way = (place: Point) => Math.hypot(place.x - at.x, place.y - at.y)
+  return places.reduce((best, place) => (way(place) < way(best) ? place : best))
+}
+
 export function movedNote(note: CanvasNote, by: Point): CanvasNote {
   const [x, y] = note.position
   return { ...note, position: corner(x + by.x, y + by.y) }

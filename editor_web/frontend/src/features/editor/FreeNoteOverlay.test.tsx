@@ -121,7 +121,13 @@ it('is not seen where notes are hidden, and part of the picture of the behavior'
   await paper()
   toggleNotes()
   await waitFor(() => expect(screen.queryByRole('button', { name: /note on the canvas/ })).toBeNull())
-  const drawn = await drawingOf(ROOT, [], () => true, 1000)
+  const drawn = await drawingOf(
+    ROOT,
+    [],
+    () => true,
+    1000,
+    () => Promise.reject(new Error('the engine was called')),
+  )
   show(<Picture drawn={drawn} title="shift" palette={OF_PAGE} />)
   expect([...document.querySelectorAll('[data-note] text')].map((line) => line.textContent)).toEqual(['Mind the gap'])
   expect(document.querySelector('[data-note] rect')?.getAttribute('style')).toContain('var(--note-blue)')

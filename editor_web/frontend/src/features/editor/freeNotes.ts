@@ -1,6 +1,7 @@
 /** Free notes of the canvas: which one has the keyboard, which one is being written, and changing them. */
 import { isForeign } from '../../document/editing/model'
 import {
+  freePlace,
   isSameNote,
   movedNote,
   newNote,
@@ -43,9 +44,13 @@ export function addFreeNote(): void {
     showEditorRefusal('Note', 'this is part of another behavior', 'Open that behavior and write it there.')
     return
   }
-  const middle = useFreeNotes.getState().middle()
-  const origin = canvasBoxes().origins.get(scope.path) ?? { x: 0, y: 0 }
-  const { path, name, note } = newNote(scope.path, { x: middle.x - origin.x, y: middle.y - origin.y })
+  const { boxes, outer, origins } = canvasBoxes()
+  const place = freePlace(
+    useFreeNotes.getState().middle(),
+    [...boxes].filter(([id]) => outer.has(id)).map(([, box]) => box),
+  )
+  const origin = origins.get(scope.path) ?? { x: 0, y: 0 }
+  const { path, name, note } = newNote(scope.path, { x: place.x - origin.x, y: place.y - origin.y })
   useNotes.setState({ isShown: true })
   useFreeNotes.setState({ fresh: { path, name, note }, writing: { path, name }, active: { path, name } })
 }

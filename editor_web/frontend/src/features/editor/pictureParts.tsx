@@ -61,7 +61,21 @@ export const OF_PAGE: Palette = {
   greyEdge: 'var(--note-grey-edge)',
 }
 
-const SANS = "'Inter Variable', Inter, system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
+/** What the variables of the page stand for: a file of its own has none. */
+export function paletteOf(token: (name: string) => string): Palette {
+  const value = (variable: string) => token(variable.slice('var(--'.length, -1))
+  const entries = Object.entries(OF_PAGE).map(([part, variable]) => [part, inOldWords(value(String(variable)))])
+  return Object.fromEntries(entries) as unknown as Palette
+}
+
+/** `rgb(30 50 90 / 2.6%)` as programs know it that draw pictures and are no browsers. */
+function inOldWords(colour: string): string {
+  const [, r, g, b, percent] = /^rgb\((\d+) (\d+) (\d+) \/ ([\d.]+)%\)$/.exec(colour) ?? []
+  return percent === undefined ? colour : `rgba(${r}, ${g}, ${b}, ${Number(percent) / 100})`
+}
+
+const SANS =
+  "'Inter Variable', Inter, system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', 'Noto Sans', 'DejaVu Sans', sans-serif"
 const MONO = "ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace"
 
 export interface PartProps {
