@@ -293,9 +293,9 @@ def test_a_free_note_is_written_moved_and_coloured_and_stays_in_the_file(browser
         first = card(page, "root/set").bounding_box()
         assert before is not None
         assert first is not None
-        page.mouse.move(before["x"] + 30, before["y"] + 60)
+        page.mouse.move(before["x"] + 30, before["y"] + 30)
         page.mouse.down()
-        page.mouse.move(first["x"] + 40, first["y"] + 80, steps=8)
+        page.mouse.move(first["x"] + 40, first["y"] + 50, steps=8)
         page.mouse.up()
         idle(page)
         after = note.bounding_box()

@@ -33,6 +33,7 @@ const lacking: Readonly<Record<string, unknown>> = {
   TextEncoder: Encoder,
   console: { log: silent, warn: silent, error: silent, info: silent, debug: silent },
 }
-for (const [name, value] of Object.entries(lacking)) if (!(name in globalThis)) Object.assign(globalThis, { [name]: value })
 
-export {}
+/** What was lacking here, and is there from now on. */
+export const supplied: readonly string[] = Object.keys(lacking).filter((name) => !(name in globalThis))
+for (const name of supplied) Object.assign(globalThis, { [name]: lacking[name] })

@@ -1,6 +1,6 @@
 /** Draws a whole behavior as an SVG without a browser: the program that `flexcell picture` runs in a JavaScript engine. */
 // First: the others find what it puts there.
-import './bareEngine'
+import { supplied } from './bareEngine'
 import Elk from 'elkjs/lib/elk.bundled.js'
 import { renderToStaticMarkup } from 'react-dom/server'
 import type { DocumentInfo, DocumentNode } from '../api/types'
@@ -22,7 +22,15 @@ export interface PictureRequest {
 }
 
 /** The SVG of a behavior, the same that the page exports. */
-export async function pictureFile({ graph, document, scheme, all }: PictureRequest): Promise<string> {
+export async function pictureFile(request: PictureRequest): Promise<string> {
+  try {
+    return await draw(request)
+  } catch (error) {
+    throw new Error(`${String(error)}; this engine lacked ${supplied.join(', ') || 'nothing'}`, { cause: error })
+  }
+}
+
+async function draw({ graph, document, scheme, all }: PictureRequest): Promise<string> {
   const elk = new Elk()
   const call: LayoutCall = async (shape) => (await elk.layout(shape as Parameters<typeof elk.layout>[0])) as typeof shape
   const inside = new Set(allNodes(graph).map((node) => node.path))

@@ -68,7 +68,7 @@ const APART_PX = 12
 /** The place nearest to one where a new note covers nothing of what is drawn, and nothing covers it. */
 export function freePlace(at: Point, taken: readonly Box[]): Point {
   const [width, height] = NEW_SIZE
-  const inTheWay = (place: Point) =>
+  const covered = (place: Point) =>
     taken.find(
       (box) =>
         box.x < place.x + width + APART_PX &&
@@ -78,7 +78,7 @@ export function freePlace(at: Point, taken: readonly Box[]): Point {
     )
   const past = (step: (box: Box, place: Point) => Point) => {
     let place = at
-    for (let box = inTheWay(place); box; box = inTheWay(place)) place = step(box, place)
+    for (let box = covered(place); box; box = covered(place)) place = step(box, place)
     return place
   }
   const places = [
@@ -87,8 +87,8 @@ export function freePlace(at: Point, taken: readonly Box[]): Point {
     past((box, { y }) => ({ x: box.x + box.width + APART_PX, y })),
     past((box, { y }) => ({ x: box.x - width - APART_PX, y })),
   ]
-  const way = (place: Point) => Math.hypot(place.x - at.x, place.y - at.y)
-  return places.reduce((best, place) => (way(place) < way(best) ? place : best))
+  const distance = (place: Point) => Math.hypot(place.x - at.x, place.y - at.y)
+  return places.reduce((best, place) => (distance(place) < distance(best) ? place : best))
 }
 
 export function movedNote(note: CanvasNote, by: Point): CanvasNote {

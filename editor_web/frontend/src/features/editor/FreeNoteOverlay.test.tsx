@@ -130,5 +130,5 @@ it('is not seen where notes are hidden, and part of the picture of the behavior'
   )
   show(<Picture drawn={drawn} title="shift" palette={OF_PAGE} />)
   expect([...document.querySelectorAll('[data-note] text')].map((line) => line.textContent)).toEqual(['Mind the gap'])
-  expect(document.querySelector('[data-note] rect')?.getAttribute('style')).toContain('var(--note-blue)')
+  expect(document.querySelector('[data-note] rect')?.getAttribute('style')).toContain('var(--accent-soft)')
 })

@@ -30,6 +30,7 @@ import {
   writeFreeNote,
 } from './freeNotes'
 import { nodeBoxes } from './nodeBoxes'
+import { OF_PAGE } from './pictureParts'
 import { useNotes } from './notes'
 import { rootOf, scopeOf, useEditor } from './store'
 import { Tool } from './Tool'
@@ -43,8 +44,36 @@ const STEPS: Readonly<Record<string, Point>> = {
   ArrowDown: { x: 0, y: STEP_PX },
 }
 const NOWHERE: Point = { x: 0, y: 0 }
-/** A shorter way is a click that shook. */
+/** A shorter drag is a click that shook. */
 const LEAST_PX = 3
+
+const EDGE = '1px solid color-mix(in srgb, var(--ink) 35%, transparent)'
+const PAPER = {
+  position: 'absolute',
+  display: 'flex',
+  alignItems: 'flex-start',
+  overflow: 'hidden',
+  padding: '8px 10px',
+  border: EDGE,
+  borderRadius: '3px 3px 10px',
+  color: 'var(--ink)',
+  fontSize: 12,
+  lineHeight: 1.35,
+  overflowWrap: 'anywhere',
+  whiteSpace: 'pre-line',
+  resize: 'none',
+  pointerEvents: 'all',
+} as const
+const CORNER = {
+  position: 'absolute',
+  zIndex: 7,
+  width: 14,
+  height: 14,
+  borderRight: '3px solid var(--ink)',
+  borderBottom: '3px solid var(--ink)',
+  cursor: 'nwse-resize',
+  pointerEvents: 'all',
+} as const
 
 interface Placed {
   readonly at: NoteRef
@@ -119,10 +148,9 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
   const isActive = useFreeNotes((s) => isSameNote(s.active, at))
   const isWriting = useFreeNotes((s) => isSameNote(s.writing, at))
   const [drag, setDrag] = useState<{ readonly kind: 'move' | 'resize'; readonly by: Point }>()
-  const paper = useRef<HTMLButtonElement>(null)
   const shown = !drag ? note : drag.kind === 'move' ? movedNote(note, drag.by) : resizedNote(note, drag.by)
   const box = boxOfNote(shown, origin)
-  const colours = { '--note-paper': token(note.colour), '--note-edge': token(note.colour, true) }
+  const paper = { ...PAPER, background: OF_PAGE[note.colour] }
   const size = { left: box.x, top: box.y, width: box.width, height: box.height }
   const end = (kind: 'move' | 'resize', by: Point) => {
     setDrag(undefined)
@@ -142,8 +170,8 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
     return (
       <Box
         component="textarea"
-        className={`${classes['freeNote']} nodrag nopan nowheel`}
-        style={{ ...size, ...colours, zIndex: 7 }}
+        className={`${classes['slip']} nodrag nopan nowheel`}
+        style={{ ...paper, ...size, zIndex: 7 }}
         aria-label="Text of the note"
         placeholder="Information for editors of the behavior"
         defaultValue={note.text}
@@ -168,9 +196,8 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
       }}
     >
       <UnstyledButton
-        ref={paper}
-        className={`${classes['freeNote']} nodrag nopan`}
-        style={{ ...size, ...colours, zIndex: depth - 1 }}
+        className="nodrag nopan"
+        style={{ ...paper, ...size, zIndex: depth - 1, cursor: isOfOther ? 'default' : 'grab' }}
         disabled={isOfOther}
         data-free-note={noteId(at)}
         aria-label={spokenNote(at, note)}
@@ -207,7 +234,7 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
                 isPressed={note.colour === colour}
                 onPress={() => void colourFreeNote(at, colour)}
               >
-                <Box w={14} h={14} bdrs="50%" bg={token(colour)} bd={`1px solid ${token(colour, true)}`} />
+                <Box w={14} h={14} bdrs="50%" bg={OF_PAGE[colour]} bd={EDGE} />
               </Tool>
             ))}
             <Tool isSmall label="Delete the note" onPress={() => void removeFreeNote(at)}>
@@ -216,19 +243,14 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
           </Group>
           <div
             aria-hidden
-            className={`${classes['noteCorner']} nodrag nopan`}
-            style={{ left: box.x + box.width - 12, top: box.y + box.height - 12 }}
+            className="nodrag nopan"
+            style={{ ...CORNER, left: box.x + box.width - 12, top: box.y + box.height - 12 }}
             {...sizing}
           />
         </>
       )}
     </div>
   )
-}
-
-function token(colour: CanvasNote['colour'], isEdge = false): string {
-  const name = colour === 'yellow' ? 'paper' : `note-${colour}`
-  return `var(--${name}${isEdge ? '-edge' : ''})`
 }
 
 function onKey(event: KeyboardEvent<HTMLElement>, at: NoteRef): void {
@@ -250,11 +272,11 @@ function focusNote(at: NoteRef): void {
   )
 }
 
-/** Following the pointer, in pixels of the document; a small way is none. */
+/** Following the pointer, in pixels of the document; less than a few are none. */
 function useNoteDrag(follow: (by: Point | undefined) => void, done: (by: Point) => void) {
   const { getZoom } = useReactFlow()
   const start = useRef<Point>(undefined)
-  const way = (event: PointerEvent): Point | undefined => {
+  const dragged = (event: PointerEvent): Point | undefined => {
     if (!start.current) return undefined
     const [x, y] = [event.clientX - start.current.x, event.clientY - start.current.y]
     return Math.hypot(x, y) < LEAST_PX ? undefined : { x: x / getZoom(), y: y / getZoom() }
@@ -266,11 +288,11 @@ function useNoteDrag(follow: (by: Point | undefined) => void, done: (by: Point) 
       event.currentTarget.setPointerCapture(event.pointerId)
     },
     onPointerMove: (event: PointerEvent<HTMLElement>) => {
-      const by = way(event)
+      const by = dragged(event)
       if (by) follow(by)
     },
     onPointerUp: (event: PointerEvent<HTMLElement>) => {
-      const by = way(event)
+      const by = dragged(event)
       start.current = undefined
       if (by) done(by)
       else follow(undefined)

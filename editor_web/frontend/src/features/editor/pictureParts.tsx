@@ -3,7 +3,7 @@ import { FRAME_HEAD, pillWidth, portY, RULE_HEIGHT, rowsHeight, tableHeight } fr
 import type { Marking } from '../../document/editing/changes'
 import { isFailure, type EditNode } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
-import { linesOf, type CanvasNote, type NoteColour } from '../../document/editing/canvasNotes'
+import { linesOf, type CanvasNote } from '../../document/editing/canvasNotes'
 import type { Box } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 import type { CanvasNode, CardNode, PillNode } from './elements'
@@ -22,17 +22,12 @@ export interface Palette {
   readonly done: string
   readonly changed: string
   readonly ink: string
-  /** Of free notes by their colour: the paper, and its edge. */
+  /** The paper of free notes by their colour. */
   readonly yellow: string
-  readonly yellowEdge: string
   readonly blue: string
-  readonly blueEdge: string
   readonly green: string
-  readonly greenEdge: string
   readonly pink: string
-  readonly pinkEdge: string
   readonly grey: string
-  readonly greyEdge: string
 }
 
 /** The colours of the page, also when its theme is changed. */
@@ -50,22 +45,17 @@ export const OF_PAGE: Palette = {
   changed: 'var(--stopped)',
   ink: 'var(--ink)',
   yellow: 'var(--paper)',
-  yellowEdge: 'var(--paper-edge)',
-  blue: 'var(--note-blue)',
-  blueEdge: 'var(--note-blue-edge)',
-  green: 'var(--note-green)',
-  greenEdge: 'var(--note-green-edge)',
+  blue: 'var(--accent-soft)',
+  green: 'var(--done-soft)',
   pink: 'var(--note-pink)',
-  pinkEdge: 'var(--note-pink-edge)',
   grey: 'var(--note-grey)',
-  greyEdge: 'var(--note-grey-edge)',
 }
 
 /** What the variables of the page stand for: a file of its own has none. */
 export function paletteOf(token: (name: string) => string): Palette {
   const value = (variable: string) => token(variable.slice('var(--'.length, -1))
   const entries = Object.entries(OF_PAGE).map(([part, variable]) => [part, inOldWords(value(String(variable)))])
-  return Object.fromEntries(entries) as unknown as Palette
+  return Object.fromEntries(entries) as Palette
 }
 
 /** `rgb(30 50 90 / 2.6%)` as programs know it that draw pictures and are no browsers. */
@@ -268,12 +258,11 @@ const NOTE_LINE = 16.2
 
 /** A free note, as much of its text as there is room for. */
 export function Paper({ note, box, palette }: { note: CanvasNote; box: Box; palette: Palette }) {
-  const [fill, stroke] = paperOf(note.colour, palette)
   const lines = linesOf(note.text, Math.max(1, Math.floor((box.width - 20) / 6.2)))
   const room = Math.max(1, Math.floor((box.height - 14) / NOTE_LINE))
   return (
     <g data-note>
-      <rect {...box} rx={4} style={{ fill, stroke, strokeWidth: 1 }} />
+      <rect {...box} rx={4} style={{ fill: palette[note.colour], stroke: palette.ink, strokeOpacity: 0.35 }} />
       {lines.slice(0, room).map((line, index) => (
         <text key={index} x={box.x + 11} y={box.y + 20 + index * NOTE_LINE} style={{ fontFamily: SANS, fontSize: 12, fill: palette.ink }}>
           {index === room - 1 && lines.length > room ? `${line} …` : line}
@@ -281,10 +270,6 @@ export function Paper({ note, box, palette }: { note: CanvasNote; box: Box; pale
       ))}
     </g>
   )
-}
-
-function paperOf(colour: NoteColour, palette: Palette): readonly [string, string] {
-  return [palette[colour], palette[`${colour}Edge`]]
 }
 
 function fitted(words: string, characters: number): string {

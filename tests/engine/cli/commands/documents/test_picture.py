@@ -13,7 +13,7 @@ import hatch_build
 from engine.editing.picture import PROGRAM
 from tests.engine.cli.command import flexcell
 
-BEHAVIOR = Path(__file__).parents[4] / "behaviors" / "test_cylinder" / "test_cylinder.yaml"
+BEHAVIOR = Path(__file__).parents[5] / "behaviors" / "test_cylinder" / "test_cylinder.yaml"
 SVG = "{http://www.w3.org/2000/svg}"
 NOTE = """
 canvas_notes:
