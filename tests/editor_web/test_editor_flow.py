@@ -301,7 +301,8 @@ def test_a_free_note_is_written_moved_and_coloured_and_stays_in_the_file(browser
         after = note.bounding_box()
         assert after is not None
         assert after["x"] == pytest.approx(first["x"] + 10, abs=3)
-        # A node takes the pointer where both are.
+        # Its tools go with the keyboard; then a node takes the pointer where both are.
+        page.keyboard.press("Escape")
         card(page, "root/set").click(position={"x": 30, "y": 10})
         expect(card(page, "root/set").locator("[data-selected]")).to_be_visible()
         save(page)

@@ -25,15 +25,15 @@ class Encoder {
 }
 
 const silent = () => undefined
-const lacking: Readonly<Record<string, unknown>> = {
-  self: globalThis,
-  setTimeout: later,
-  clearTimeout: silent,
-  MessageChannel: Channel,
-  TextEncoder: Encoder,
-  console: { log: silent, warn: silent, error: silent, info: silent, debug: silent },
-}
+const wanted = new Map<string, unknown>([
+  ['self', globalThis],
+  ['setTimeout', later],
+  ['clearTimeout', silent],
+  ['MessageChannel', Channel],
+  ['TextEncoder', Encoder],
+  ['console', { log: silent, warn: silent, error: silent, info: silent, debug: silent }],
+])
 
 /** What was lacking here, and is there from now on. */
-export const supplied: readonly string[] = Object.keys(lacking).filter((name) => !(name in globalThis))
-for (const name of supplied) Object.assign(globalThis, { [name]: lacking[name] })
+export const supplied: readonly string[] = [...wanted.keys()].filter((name) => !(name in globalThis))
+for (const name of supplied) Object.assign(globalThis, { [name]: wanted.get(name) })

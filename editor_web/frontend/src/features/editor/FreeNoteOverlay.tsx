@@ -14,6 +14,7 @@ import {
   type CanvasNote,
   type NoteRef,
 } from '../../document/editing/canvasNotes'
+import { lookup, type Dict } from '../../document/dict'
 import { allNodes, isForeign } from '../../document/editing/model'
 import type { Point } from '../../document/geometry'
 import classes from './canvas.module.css'
@@ -37,7 +38,7 @@ import { Tool } from './Tool'
 
 /** By which the keys of the arrows move a note. */
 const STEP_PX = 10
-const STEPS: Readonly<Record<string, Point>> = {
+const STEPS: Dict<Point> = {
   ArrowLeft: { x: -STEP_PX, y: 0 },
   ArrowRight: { x: STEP_PX, y: 0 },
   ArrowUp: { x: 0, y: -STEP_PX },
@@ -254,7 +255,7 @@ function FreeNote({ at, note, origin, depth, isOfOther }: Placed) {
 }
 
 function onKey(event: KeyboardEvent<HTMLElement>, at: NoteRef): void {
-  const step = STEPS[event.key]
+  const step = lookup(STEPS, event.key)
   if (event.ctrlKey || event.metaKey || event.altKey) return
   if (step) void (event.shiftKey ? resizeFreeNote(at, step) : moveFreeNote(at, step))
   else if (event.key === 'Enter') writeFreeNote(at)
