@@ -25,7 +25,7 @@ class Encoder {
 }
 
 const silent = () => undefined
-const wanted = new Map<string, unknown>([
+const globals = new Map<string, unknown>([
   ['self', globalThis],
   ['setTimeout', later],
   ['clearTimeout', silent],
@@ -35,5 +35,5 @@ const wanted = new Map<string, unknown>([
 ])
 
 /** What was lacking here, and is there from now on. */
-export const supplied: readonly string[] = [...wanted.keys()].filter((name) => !(name in globalThis))
-for (const name of supplied) Object.assign(globalThis, { [name]: wanted.get(name) })
+export const supplied: readonly string[] = [...globals.keys()].filter((name) => !(name in globalThis))
+for (const name of supplied) Object.assign(globalThis, { [name]: globals.get(name) })
