@@ -9,21 +9,24 @@ a planned path that waits for its operator, `shared` an arm that waits because a
 
 Only where they are named: `operate`, `debug` and `3d` are the layouts of a paused run, each at three sizes. They
 are not kept in the repository; give a folder for them. Needs the extras `all` and `test` and a Chromium. Without a
-graphics card the 3D view takes seconds a picture.
+graphics card the 3D view takes seconds a picture; it is waited for until two shots in a row are equal.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.served_dashboard import served_dashboard
@@ -32,8 +35,13 @@ from tests.editor_web.browsing import browser_program
 ROOT = Path(__file__).parent.parent
 OUT = ROOT / "docs" / "screenshots"
 LIMIT_MS = 240_000
-RESIZED_MS = 4000
-"""Until the 3D view is drawn in another size without a graphics card; nothing on the page tells when it is."""
+STILL_LIMIT_S = 180.0
+"""Within which the 3D view must come to rest; without a graphics card it draws for seconds."""
+BETWEEN_SHOTS_MS = 3000
+"""Between two shots of the 3D view, so that what is on its way arrives: meshes come one by one after the canvas."""
+FEWEST_COLOURS = 200
+"""A 3D view with fewer has drawn only its ground so far."""
+VIEW = "iframe[title='3D view of the cell']"
 Scheme = Literal["light", "dark"]
 Size = tuple[int, int]
 DESKTOP: Size = (1280, 800)
@@ -73,12 +81,38 @@ def sweep_runs() -> None:
     subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL)
 
 
+def still(page: Page) -> None:
+    """Wait until two shots of the 3D view in a row are equal, and show something; the arms must be at rest.
+
+    Nothing on the page tells when the last mesh is drawn, nor when another size is.
+
+    Raises:
+        TimeoutError: It has not come to rest within the limit.
+    """
+    view = page.locator(VIEW)
+    end_s = time.monotonic() + STILL_LIMIT_S
+    before, shots, colours = b"", 0, 0
+    while time.monotonic() < end_s:
+        now = view.screenshot(timeout=LIMIT_MS)
+        shots += 1
+        if now == before:
+            colours = len(Image.open(io.BytesIO(now)).convert("RGB").getcolors(1 << 24) or ())
+            if colours >= FEWEST_COLOURS:
+                return
+        before = now
+        page.wait_for_timeout(BETWEEN_SHOTS_MS)
+    seen = f"it shows {colours} colours only, no cell" if colours else "no two in a row were equal"
+    raise TimeoutError(
+        f"the 3D view of {page.url} is not at rest after {STILL_LIMIT_S:g} s and {shots} shots: {seen}; "
+        "see whether something moves there, and raise STILL_LIMIT_S on a slow machine"
+    )
+
+
 def drawn(page: Page) -> None:
-    """Wait until the 3D view shows something."""
-    view = page.frame_locator("iframe[title='3D view of the cell']").locator("canvas[data-engine]")
+    """Wait until the 3D view has drawn the cell at rest."""
+    view = page.frame_locator(VIEW).locator("canvas[data-engine]")
     expect(view).to_be_visible(timeout=LIMIT_MS)
-    # Meshes arrive after the canvas, and nothing on the page tells when the last one is drawn.
-    page.wait_for_timeout(6000)
+    still(page)
 
 
 def start(page: Page) -> None:
@@ -151,8 +185,7 @@ def looked_back(page: Page) -> None:
     assert box is not None
     page.mouse.click(box["x"] + 0.45 * box["width"], box["y"] + 8)
     expect(page.get_by_role("button", name="Back to live")).to_be_visible(timeout=LIMIT_MS)
-    # The meshes of the past are sent once, which takes a moment without a graphics card.
-    page.wait_for_timeout(8000)
+    still(page)
 
 
 def taught(page: Page) -> None:
@@ -209,7 +242,7 @@ def take(browser: Browser, login: str, picture: Picture, scheme: Scheme, out: Pa
     for size in (picture.size, *picture.further):
         if size != picture.size:
             page.set_viewport_size({"width": size[0], "height": size[1]})
-            page.wait_for_timeout(RESIZED_MS)
+            still(page)
         at = f"-{size[0]}x{size[1]}" if picture.further else ""
         file = out / f"{picture.name}{at}-{scheme}.png"
         page.screenshot(path=file, timeout=LIMIT_MS)

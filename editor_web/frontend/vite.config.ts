@@ -1,5 +1,6 @@
 /** How the page is built: into the Python package, in files whose names carry their content's hash. */
 import react from '@vitejs/plugin-react'
+import { build, type Plugin } from 'vite'
 import { defineConfig } from 'vitest/config'
 import { notices } from './notices/plugin.ts'
 
@@ -8,8 +9,15 @@ const server = 'http://127.0.0.1:8642'
 
 const thirdParty = notices()
 
+/** The program of `flexcell picture` is built beside the page, after it: that build empties the folder. */
+const picture: Plugin = {
+  name: 'picture',
+  apply: 'build',
+  closeBundle: async () => void (await build({ configFile: 'vite.picture.config.ts', logLevel: 'warn' })),
+}
+
 export default defineConfig({
-  plugins: [react(), thirdParty.page()],
+  plugins: [react(), thirdParty.page(), picture],
   build: {
     outDir: '../static',
     emptyOutDir: true,
@@ -49,6 +57,8 @@ export default defineConfig({
           name: 'components',
           include: ['src/**/*.test.tsx'],
           environment: 'happy-dom',
+          // Colours are read from it; other style sheets stay empty.
+          css: { include: [/tokens\.css/] },
           isolate: false,
           setupFiles: 'testing/setup.ts',
         },

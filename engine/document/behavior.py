@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from engine.document.canvas_note import CanvasNote, NoteName
 from engine.document.nodes.node_kind import OutcomeName
 from engine.document.nodes.node_spec import Key, NodeSpec
 from engine.document.parameter_spec import ParameterSpec
@@ -23,7 +24,10 @@ from engine.errors import Position
 
 
 class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
-    """A behavior as written. `view` (canvas positions) and `notes`, by node path, do not affect a run."""
+    """A behavior as written.
+
+    `view` (canvas positions), `notes` and `canvas_notes`, by node path, do not affect a run.
+    """
 
     flexcell: Literal[1]
     name: Annotated[str, Meta(min_length=1, max_length=128, description="Display name")]
@@ -36,6 +40,7 @@ class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
     root: NodeSpec
     view: dict[str, tuple[float, float]] = {}
     notes: dict[str, str] = {}
+    canvas_notes: dict[str, dict[NoteName, CanvasNote]] = {}
 
 
 # No slots: cached properties need a `__dict__`.
@@ -63,7 +68,7 @@ class Behavior(DocumentFile[BehaviorDocument]):
         order = [list(document.parameters), *(list(node.children) for _, node in self.nodes())]
         references = {written: referred.meaning for written, referred in self.references.items()}
         digest = sha256()
-        for part in (msgspec.structs.replace(document, view={}, notes={}), order, references):
+        for part in (msgspec.structs.replace(document, view={}, notes={}, canvas_notes={}), order, references):
             digest.update(msgspec.json.encode(part, order="sorted"))
             digest.update(b"\n")
         if self.substitutes is None:

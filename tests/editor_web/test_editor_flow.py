@@ -274,6 +274,51 @@ def test_a_note_is_written_on_the_canvas_and_stays_in_the_file(browser: Browser,
     assert file_text(shop, SHIFT_ID) == SHIFT + "notes: {root: Night shift only}\n"
 
 
+def test_a_free_note_is_written_moved_and_coloured_and_stays_in_the_file(browser: Browser, shop: Workshop) -> None:
+    """By the keyboard and by the mouse, each way undone as one step; it lies below the nodes."""
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        page.locator(".react-flow__pane").click(position={"x": 5, "y": 5})
+        page.keyboard.press("Shift+N")
+        page.keyboard.type("Night shift only")
+        page.keyboard.press("Control+Enter")
+        note = page.get_by_role("button", name="Yellow note on the canvas of the behavior: Night shift only")
+        expect(note).to_be_focused()
+        page.keyboard.press("Shift+ArrowRight")
+        idle(page)
+        require_accessible(page, "a free note", part="[data-canvas]")
+        page.get_by_role("button", name="Make the note pink").click()
+        idle(page)
+        note = page.get_by_role("button", name=re.compile("^Pink note"))
+        before = note.bounding_box()
+        first = card(page, "root/set").bounding_box()
+        assert before is not None
+        assert first is not None
+        page.mouse.move(before["x"] + 30, before["y"] + 30)
+        page.mouse.down()
+        page.mouse.move(first["x"] + 40, first["y"] + 50, steps=8)
+        page.mouse.up()
+        idle(page)
+        after = note.bounding_box()
+        assert after is not None
+        assert after["x"] == pytest.approx(first["x"] + 10, abs=3)
+        # Its tools go with the keyboard; then a node takes the pointer where both are.
+        page.keyboard.press("Escape")
+        card(page, "root/set").click(position={"x": 30, "y": 10})
+        expect(card(page, "root/set").locator("[data-selected]")).to_be_visible()
+        save(page)
+        made = file_text(shop, SHIFT_ID)
+        assert made.startswith(SHIFT)
+        head, _, note_line = made.removeprefix(SHIFT).partition("    ")
+        assert head == "canvas_notes:\n  root:\n"
+        assert re.match(r"n\w{5}: \{text: Night shift only, position: ", note_line)
+        assert note_line.endswith("size: [210, 90], colour: pink}\n")
+        for _ in range(4):
+            page.keyboard.press("Control+z")
+        expect(note).to_have_count(0)
+        save(page)
+    assert file_text(shop, SHIFT_ID) == SHIFT
+
+
 def test_two_fingers_zoom_the_canvas_and_a_long_press_asks_what_to_add(browser: Browser, shop: Workshop) -> None:
     """As on a tablet: touches as the browser gets them."""
     with at_editor(browser, shop, SHIFT_ID) as first:

@@ -10,7 +10,7 @@ from engine.editing.text.outline import NodeRef, Outline, Plain, child_entries
 
 Change = Literal["added", "removed", "changed", "moved"]
 DOCUMENT_PATH = "document"
-_LAYOUT = ("view",)
+_CANVAS_NOTES = "canvas_notes"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,11 +50,36 @@ def compare_texts(before: str, after: str, *, file: str) -> DocumentDiff:
         DocumentError: one of them cannot be read.
     """
     old, new = Draft(before, file=file).data, Draft(after, file=file).data
-    fields = _fields({k: v for k, v in old.items() if k != "root"}, {k: v for k, v in new.items() if k != "root"})
+    fields = _fields(_declared(old), _declared(new))
     changes = [NodeChange(path=DOCUMENT_PATH, change="changed", fields=fields)] if fields else []
     nodes = _compare(Outline(old), Outline(new))
-    layout_only = bool(fields) and not nodes and all(each.field in _LAYOUT for each in fields)
+    layout_only = bool(fields) and not nodes and all(_is_layout(each.field) for each in fields)
     return DocumentDiff(changes=(*changes, *nodes), layout_only=layout_only)
+
+
+def _declared(document: Plain) -> Plain:
+    """Return what stands beside the nodes; each field of a note on the canvas by itself."""
+    found: Plain = {}
+    for key, value in document.items():
+        if key == _CANVAS_NOTES and isinstance(value, dict):
+            found |= _flat(key, cast("Plain", value), depth=3)
+        elif key != "root":
+            found[key] = value
+    return found
+
+
+def _flat(head: str, mapping: Plain, depth: int) -> Plain:
+    found: Plain = {}
+    for key, value in mapping.items():
+        name = f"{head}.{key}"
+        found |= (
+            _flat(name, cast("Plain", value), depth - 1) if depth > 1 and isinstance(value, dict) else {name: value}
+        )
+    return found
+
+
+def _is_layout(field: str) -> bool:
+    return field == "view" or (field.startswith(f"{_CANVAS_NOTES}.") and field.endswith((".position", ".size")))
 
 
 def _compare(old: Outline, new: Outline) -> list[NodeChange]:

@@ -10,6 +10,7 @@ from typing import cast
 
 import msgspec
 
+from engine.document.canvas_note import CanvasNote
 from engine.document.nodes.concurrency_condition import ConcurrencyCondition
 from engine.document.nodes.node_kind import MACHINES, SLOTS
 from engine.document.nodes.node_kinds import node_icon
@@ -28,7 +29,7 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the
     arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`.
     `document` is the id of the behavior that it references. `exits` are the outcomes that its container does not lead
-    anywhere yet. `role` is its key in the surrounding tree node, such as `then`.
+    anywhere yet. `role` is its key in the surrounding tree node, such as `then`. `canvas_notes` stand freely inside it.
     """
 
     label: str
@@ -54,6 +55,7 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     success: tuple[str, ...]
     every: object
     notes: str
+    canvas_notes: dict[str, CanvasNote]
     position: tuple[float, float] | None
     rules: tuple[ConcurrencyCondition, ...]
     otherwise: str | None
@@ -168,6 +170,7 @@ class _Drawing:
         self._outline = outline
         self._view = _mapping(draft.data.get("view"))
         self._notes = _mapping(draft.data.get("notes"))
+        self._canvas_notes = _mapping(draft.data.get("canvas_notes"))
         text = draft.origin.text
         self._starts = list(accumulate((len(line) + 1 for line in text.split("\n")), initial=0))[:-1]
         self._ends: dict[str, NodeOutcomes] = {}
@@ -197,10 +200,11 @@ class _Drawing:
         if source is None or parent is None or not (is_state or self._is_closed(ref)):
             return self._drawn(ref, lines)
         # What it shows follows from its text and from these.
-        note, place = self._notes.get(path), self._view.get(path)
+        note, place, free = self._notes.get(path), self._view.get(path), self._canvas_notes.get(path)
         around = (
             path, ref.role, parent.kind in MACHINES, _text(note) if note is not None else "",
             self._draft.source_of(place) if place is not None else None,
+            self._draft.source_of(free) if free is not None else None,
         )  # fmt: skip
         known = self._before.get(id(source))
         if known is None or known.source is not source or known.around != around:
@@ -277,6 +281,7 @@ class _Drawing:
             success=texts(data.get("success")),
             every=data.get("every"),
             notes=_text(self._notes.get(ref.path)),
+            canvas_notes=_canvas_notes(self._canvas_notes.get(ref.path)),
             position=_point(self._view.get(ref.path)),
             rules=tuple(_rules(ref)),
             otherwise=_optional(body.get("otherwise")) if ref.kind == "concurrency" else None,
@@ -351,6 +356,17 @@ def _text(value: object) -> str:
 
 def _optional(value: object) -> str | None:
     return value if isinstance(value, str) and value else None
+
+
+def _canvas_notes(value: object) -> dict[str, CanvasNote]:
+    """Return the notes that can be read; those with mistakes are findings."""
+    found: dict[str, CanvasNote] = {}
+    for name, each in _mapping(value).items():
+        try:
+            found[name] = msgspec.convert(each, CanvasNote)
+        except msgspec.ValidationError:
+            continue
+    return found
 
 
 def _point(value: object) -> tuple[float, float] | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine.editing.edits import edit, grouping, transition_edits, type_replacement, ungrouping
+from engine.editing.edits import edit, grouping, note_edits, transition_edits, type_replacement, ungrouping
 from engine.editing.edits import field_edits as fields
 from engine.editing.edits import node_edits as nodes
 from engine.editing.edits import node_insertion as adding
@@ -30,6 +30,7 @@ _MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
     edit.ClearParameter: fields.clear_parameter,
     edit.SetField: fields.set_field,
     edit.SetPositions: fields.set_positions,
+    edit.SetCanvasNote: note_edits.set_canvas_note,
     edit.GroupNodes: grouping.group,
     edit.UngroupNode: ungrouping.ungroup,
     edit.ReplaceType: type_replacement.replace_type,

@@ -7,6 +7,8 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from engine.document.canvas_note import CanvasNote, NoteName
+
 CanvasPoint = tuple[float, float]
 NodePath = Annotated[str, Meta(max_length=4000, description="Path of a node, `root/approach/left`")]
 NodeName = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")]
@@ -124,6 +126,14 @@ class SetPositions(Edit, frozen=True, kw_only=True, tag="set_positions"):
     positions: dict[NodePath, CanvasPoint | None]
 
 
+class SetCanvasNote(Edit, frozen=True, kw_only=True, tag="set_canvas_note"):
+    """Add a free note to the canvas of a container, change it, move it, resize it; null removes it."""
+
+    path: NodePath
+    name: NoteName
+    note: CanvasNote | None
+
+
 class GroupNodes(Edit, frozen=True, kw_only=True, tag="group"):
     """Group siblings in a new container in their place; transitions that leave them become its outcomes."""
 
@@ -202,6 +212,7 @@ AnyEdit = (
     | ClearParameter
     | SetField
     | SetPositions
+    | SetCanvasNote
     | GroupNodes
     | UngroupNode
     | ReplaceType

@@ -128,7 +128,7 @@ class ReferenceUpdate:
     """Keeps references valid while nodes are renamed, moved and removed.
 
     Create it before the nodes change; `finish` then updates transitions, initial children, conditions, policies, canvas
-    positions and notes to the new paths of the nodes.
+    positions and all notes to the new paths of the nodes.
     """
 
     session: EditSession
@@ -169,7 +169,7 @@ class ReferenceUpdate:
             gone = moved[around.path]
             if ref.name in gone or not gone.isdisjoint(targets_of(now.data)):
                 self._follow_leads(now, around, inside[around.path], after, instead or {}, dangling)
-        for key in ("view", "notes"):
+        for key in ("view", "notes", "canvas_notes"):
             self._follow_paths(key, before, after)
 
     def _follow_leads(

@@ -38,6 +38,7 @@ _HEAD = (
     "root",
     "view",
     "notes",
+    "canvas_notes",
 )
 _ORDER = (
     "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "post", "timeout", "retry",
@@ -94,7 +95,7 @@ def set_positions(session: EditSession, edit: SetPositions) -> None:
         if point is None:
             view.pop(path, None)
         else:
-            at = [_rounded(number) for number in point]
+            at = [rounded(number) for number in point]
             view[path] = graft(view[path], at) if path in view else at
             session.mark(ref.data)
     if view:
@@ -256,7 +257,8 @@ def _insert_in_order(mapping: Plain, key: str, value: object, order: tuple[str, 
     mapping.update(items)
 
 
-def _rounded(number: float) -> int | float:
+def rounded(number: float) -> int | float:
+    """Return pixels as they are written, with one digit; rejects what is far off the canvas."""
     if not -_FARTHEST_PX <= number <= _FARTHEST_PX:
         raise EditRefused(f"position out of range: {number:g}", hint=f"positions are within ±{_FARTHEST_PX} pixels")
     near = round(number, 1)

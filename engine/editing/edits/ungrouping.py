@@ -8,6 +8,7 @@ from engine.document.nodes.node_kind import GROUPS, MACHINES, NAMED, SLOTS
 from engine.editing.edits.edit import CanvasPoint, SetPositions, UngroupNode
 from engine.editing.edits.edit_session import EditSession, ReferenceUpdate, named_children
 from engine.editing.edits.field_edits import set_positions
+from engine.editing.edits.note_edits import all_notes, move_notes
 from engine.editing.text.draft import EditRefused
 from engine.editing.text.outline import NodeRef, Plain
 
@@ -28,6 +29,8 @@ def ungroup(session: EditSession, edit: UngroupNode) -> None:
             raise EditRefused(f"the `{key}` of `{ref.path}` would be lost", hint="remove it first")
     if ref.body.get("userdata"):
         raise EditRefused(f"the userdata of `{ref.path}` would be lost", hint="declare it further outside first")
+    left = cast("Plain", all_notes(session).get(ref.path) or {})
+    corner = _point(session, ref) or (0.0, 0.0)
     if home.kind in MACHINES and ref.kind == "machine":
         _machine_in_machine(session, home, ref, children)
     elif home.kind in MACHINES and ref.kind == "tree":
@@ -39,6 +42,8 @@ def ungroup(session: EditSession, edit: UngroupNode) -> None:
     else:
         hint = "ungroup machines in machines, plain sequences, and parts of trees"
         raise EditRefused(f"ungrouping a {ref.kind} in a {home.kind} would change the behavior", hint=hint)
+    if left:
+        move_notes(session, left, session.outline.path_of(home.data), corner)
 
 
 def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import cast
 
+from engine.document.canvas_note import CanvasNote
 from engine.document.nodes.node_kind import KINDS
 from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.text.syntax import Collection
 
 _NODES = frozenset((*KINDS, *TREE_KINDS))
+_OF_NOTES = frozenset(CanvasNote.__struct_fields__)
 
 
 def has_node(value: object) -> bool:
@@ -25,6 +27,14 @@ def lists_mappings(value: object) -> bool:
     """Return whether a value is a list of mappings, such as conditions, which is easier to read line by line."""
     return isinstance(value, list) and any(
         isinstance(each, dict) and each != {} for each in cast("list[object]", value)
+    )
+
+
+def holds_notes(value: object) -> bool:
+    """Return whether a value holds notes of the canvas, of which each has a line of its own."""
+    return isinstance(value, dict) and any(
+        isinstance(each, dict) and (each.keys() == _OF_NOTES or holds_notes(cast("object", each)))
+        for each in cast("dict[str, object]", value).values()
     )
 
 

@@ -16,6 +16,7 @@ from engine.errors import DocumentError
 
 Side = Literal["mine", "theirs"]
 DOCUMENT_PATH = "document"
+_CANVAS_NOTES = "canvas_notes."
 _NAME_LISTS = frozenset(("outcomes", "success", "choices", "shared", "next"))
 """Lists of names, of which each side may add and remove some."""
 
@@ -122,7 +123,7 @@ class _Merging:
         """Merge one value; `put` writes it into the data of the file."""
         if _same(mine, base) or _same(mine, theirs):
             return
-        if _same(theirs, base) or field.startswith("view."):
+        if _same(theirs, base) or _is_place(field):
             put(mine)
             return
         node = self._node_of(base, mine, theirs, path, field)
@@ -180,12 +181,20 @@ class _Merging:
     ) -> None:
         if path == DOCUMENT_PATH and field.startswith("notes."):
             path, field = field.removeprefix("notes."), "note"
+        elif path == DOCUMENT_PATH and field.startswith(_CANVAS_NOTES):
+            path, _, field = field.removeprefix(_CANVAS_NOTES).partition(".")
+            field = f"canvas note {field}".rstrip()
         side = self._sides.get(f"{path} {field}", "mine")
         values = (None if isinstance(each, _Absent) else each for each in (base, mine, theirs))
         started, one, two = values
         self.conflicts.append(NodeConflict(path=path, field=field, base=started, mine=one, theirs=two, side=side))
         if side == "mine":
             put(mine)
+
+
+def _is_place(field: str) -> bool:
+    """Return whether a field is a place or size on the canvas: of those the one of who saves is taken."""
+    return field.startswith("view.") or (field.startswith(_CANVAS_NOTES) and field.endswith((".position", ".size")))
 
 
 def _same(one: object, other: object) -> bool:

@@ -88,6 +88,15 @@ def containers(inner: st.SearchStrategy[Plain]) -> st.SearchStrategy[Plain]:
     )
 
 
+CANVAS_NOTES: st.SearchStrategy[Plain] = keyed(
+    {
+        "text": TEXTS,
+        "position": st.tuples(st.integers(-99, 99), st.floats(0, 99)).map(list),
+        "size": st.just([200, 80.5]),
+        "colour": st.sampled_from(["yellow", "grey"]),
+    },
+    {},
+)
 BEHAVIORS: st.SearchStrategy[Plain] = keyed(
     {
         "flexcell": st.just(1),
@@ -105,6 +114,10 @@ BEHAVIORS: st.SearchStrategy[Plain] = keyed(
         "success": st.lists(OUTCOMES, unique=True),
         "view": st.dictionaries(
             st.sampled_from(["root", "root/go"]), st.tuples(st.integers(0, 99), st.floats(0, 99)).map(list)
+        ),
+        "canvas_notes": st.dictionaries(
+            st.sampled_from(["root", "root/go"]),
+            st.dictionaries(KEYS, CANVAS_NOTES, min_size=1, max_size=2),
         ),
     },
 )

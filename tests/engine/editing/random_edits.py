@@ -69,6 +69,14 @@ _KINDS = st.sampled_from([*KINDS, *TREE_KINDS, *WRAPPERS, "zzz"])
 _ODD = st.sampled_from(
     [None, 1, 0.5, "text", "${k}", [], ["s0"], {}, {"after": 1, "to": "x"}, {"a": "b"}, [{"x": {"b0": "a"}}]]
 )
+_NOTES = st.fixed_dictionaries(
+    {
+        "text": st.sampled_from(["", "plain", "two\nlines", "a: b # c"]),
+        "position": st.tuples(st.floats(-99, 99), st.just(2)).map(list),
+        "size": st.just([200, 90]),
+        "colour": st.sampled_from(["yellow", "pink"]),
+    }
+)
 _OF_NODES = sorted(
     each.encode_name
     for kind in vars(node_spec).values()
@@ -102,6 +110,7 @@ def any_edits(paths: list[str]) -> st.SearchStrategy[Plain]:
         "clear_parameter": {"path": path, "name": _NAMES},
         "set_field": {"path": path, "field": _FIELDS, "value": _ODD},
         "set_positions": {"positions": st.dictionaries(path, point, max_size=3)},
+        "set_canvas_note": {"path": path, "name": _NAMES, "note": st.none() | _NOTES},
         "group": {"paths": some, "kind": _GROUPS},
         "ungroup": {"path": path},
         "replace_type": {"paths": some, "kind": _KINDS, "runs": runs},

@@ -291,6 +291,14 @@ export interface ButtonInput {
   readonly value: boolean
 }
 
+/** A note on the canvas: plain text, its upper left corner relative to its container, its size, its colour. */
+export interface CanvasNote {
+  readonly text: string
+  readonly position: readonly [number, number]
+  readonly size: readonly [number, number]
+  readonly colour: "blue" | "green" | "grey" | "pink" | "yellow"
+}
+
 /** A capture with all its data; missing data is None or empty. */
 export interface Capture {
   readonly summary: CaptureSummary
@@ -727,7 +735,7 @@ export interface DocumentInfo {
   readonly success: readonly string[]
 }
 
-/** One node as written: values raw, `${…}` not evaluated; lines and columns count from 1. `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior that it references. `exits` are the outcomes that its container does not lead anywhere yet. `role` is its key in the surrounding tree node, such as `then`. */
+/** One node as written: values raw, `${…}` not evaluated; lines and columns count from 1. `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior that it references. `exits` are the outcomes that its container does not lead anywhere yet. `role` is its key in the surrounding tree node, such as `then`. `canvas_notes` stand freely inside it. */
 export interface DocumentNode {
   readonly path: string
   readonly name: string
@@ -764,6 +772,7 @@ export interface DocumentNode {
   readonly success: readonly string[]
   readonly every: unknown
   readonly notes: string
+  readonly canvas_notes: Dict<CanvasNote>
   readonly position: readonly [number, number] | null
   readonly rules: readonly ConcurrencyCondition[]
   readonly otherwise: string | null
@@ -2446,6 +2455,14 @@ export interface SessionBody {
   readonly stop: StopEndpoint | null
 }
 
+/** Add a free note to the canvas of a container, change it, move it, resize it; null removes it. */
+export interface SetCanvasNote {
+  readonly edit: "set_canvas_note"
+  readonly path: string
+  readonly name: string
+  readonly note: CanvasNote | null
+}
+
 /** Change declarations of the document; null removes a key. Other keys are unchanged. Keys: name, description, cell, parameters, userdata, outcomes, success. */
 export interface SetDocument {
   readonly edit: "set_document"
@@ -3215,7 +3232,7 @@ export interface WatchValue {
 
 export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | CellStateFrame | IdleFrame
 
-export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | ReplaceType | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
+export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | SetCanvasNote | GroupNodes | UngroupNode | ReplaceType | DuplicateNodes | PasteNodes | SetDocument | AutoConnect
 
 export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | StatesChanged | SweepsChanged | CellStopChanged | PresenceChanged | Ping
 

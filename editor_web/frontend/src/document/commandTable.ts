@@ -78,6 +78,7 @@ const BUILD = table('editor', 'Build', [
   ['replace', 'Replace what the selected nodes are: another state, behavior or container', 'Shift+r'],
   ['disable', 'Disable the selected nodes, or enable them again', 'x'],
   ['note', 'Add a note to the selected node, or to the container on the canvas', 'n'],
+  ['free-note', 'Add a free note to the canvas', 'Shift+n'],
   ['remove', 'Delete', 'Delete', 'Backspace'],
   ['duplicate', 'Duplicate', 'Ctrl+d'],
   ['copy', 'Copy', 'Ctrl+c'],

@@ -58,6 +58,9 @@ def test_a_reference_is_drawn_again_with_what_its_file_says_now(kind: str, tmp_p
     assert analysis_of(answer) == expected
 
 
+CANVAS_NOTE = {"text": "mind", "position": [1, 2], "size": [200, 90], "colour": "grey"}
+
+
 def test_a_container_is_drawn_again_with_its_new_name_and_note(tmp_path: Path) -> None:
     kind = "machine: {initial: inner, states: {inner: {state: flow.Wait, transitions: {done: done}}}}"
     text, file, drafts = dedent(TEXT).format(kind=kind), tmp_path / "whole.yaml", DraftCache()
@@ -65,6 +68,8 @@ def test_a_container_is_drawn_again_with_its_new_name_and_note(tmp_path: Path) -
         {"edit": "rename_node", "path": "root/first", "name": "begin"},
         {"edit": "set_field", "path": "root/begin", "field": "notes", "value": "looks"},
         {"edit": "set_positions", "positions": {"root/begin": [4, 5]}},
+        {"edit": "set_canvas_note", "path": "root/begin", "name": "n1", "note": CANVAS_NOTE},
+        {"edit": "set_canvas_note", "path": "root/begin", "name": "n1", "note": {**CANVAS_NOTE, "colour": "pink"}},
         {"edit": "rename_node", "path": "root/begin/inner", "name": "deep"},
     ):
         edits, _ = read_edits([edit])

@@ -10,6 +10,7 @@ import { flowOf } from '../flow'
 import { moved, type Box, type Point, type Size } from '../geometry'
 import type { LayoutCall } from '../elkGraph'
 import { edgeId, outcomeId } from '../edgeId'
+import { noteBoxes } from './canvasNotes'
 import { adopt, empty, put, sized, type Content } from './content'
 import { byEngine, entryOf, portOf } from './engineLayout'
 import { FRAME_HEAD, frameWidth, leafSize, PILL_HEIGHT, pillsOf, pillWidth, rowsHeight, tableHeight, twigSize } from './measure'
@@ -56,6 +57,7 @@ export async function arrange(scope: EditNode, options: ArrangeOptions): Promise
     content.own.set(rulesId(scope.path), { x: 0, y: height + 20, width, height: table })
     height += 20 + table
   }
+  for (const [id, box] of noteBoxes(scope, origins.get(scope.path))) content.own.set(id, box)
   return {
     boxes: new Map([...content.deep, ...content.own]),
     outer: new Set(content.own.keys()),
@@ -77,14 +79,26 @@ async function unit(node: EditNode, parent: EditNode, options: ArrangeOptions): 
   const content = await inside(node, { ...options, rowLimit: options.rowLimit - 2 * PADDING }, false)
   const rows = rowsHeight(outgoingTransitions(parent, node).length)
   const table = tableHeight(node)
+  const room = takeNotes(node, content)
   const frame = empty(
-    Math.max(content.width + 2 * PADDING, frameWidth(node), table > 0 ? 300 : 0),
-    FRAME_HEAD + content.height + PADDING + table + rows,
+    Math.max(content.width + room.x + 2 * PADDING, frameWidth(node), table > 0 ? 300 : 0),
+    FRAME_HEAD + content.height + room.y + PADDING + table + rows,
   )
-  const corner = { x: PADDING, y: FRAME_HEAD }
+  const corner = moved({ x: PADDING, y: FRAME_HEAD }, room)
   adopt(frame, content, corner)
   frame.origins.set(node.path, moved(content.origins.get(node.path) ?? { x: 0, y: 0 }, corner))
   return frame
+}
+
+/** Put the notes of a container beside what is in it; gives the room that those left of it and above it need. */
+function takeNotes(node: EditNode, content: Content): Point {
+  const notes = noteBoxes(node, content.origins.get(node.path))
+  for (const [id, box] of notes) {
+    content.own.set(id, box)
+    content.width = Math.max(content.width, box.x + box.width)
+    content.height = Math.max(content.height, box.y + box.height)
+  }
+  return { x: Math.max(0, ...notes.map(([, box]) => -box.x)), y: Math.max(0, ...notes.map(([, box]) => -box.y)) }
 }
 
 async function inside(node: EditNode, options: ArrangeOptions, isScope: boolean): Promise<Content> {

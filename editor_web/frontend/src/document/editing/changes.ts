@@ -61,9 +61,12 @@ function movedWords(before: string, after: string): string {
 
 function fieldWords(field: string, before: unknown, after: unknown): string {
   if (field === 'view') return 'places on the canvas'
+  const [, name, part] = /^canvas_notes\.[^.]+\.([^.]+)\.(\w+)$/.exec(field) ?? []
+  if (name !== undefined && part !== undefined && part !== 'text') return `${part} of the note ${name} on the canvas`
   if (field.endsWith('.order')) return `order: ${(Array.isArray(after) ? after : []).join(', ')}`
   const what = field
     .replace(/^with\./, '')
+    .replace(/^canvas_notes\.[^.]+\.([^.]+)\.text$/, 'note $1 on the canvas')
     .replace(/^transitions\.(.*)$/, '$1 leads to')
     .replace(/^(machine|priority)\.initial$/, 'begins with')
   if (before === null || before === undefined) return `${what}: ${shown(after)}`

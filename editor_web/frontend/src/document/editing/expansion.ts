@@ -73,6 +73,14 @@ export function frameOf(scope: EditNode, path: string): EditNode {
   return frame
 }
 
+/** Outcomes of a machine that nothing inside leads to yet: those of the behavior, and those used outside. */
+export function declaredOutcomes(root: EditNode, outcomes: readonly string[]): (node: EditNode) => readonly string[] {
+  return (node) => {
+    if (node === root) return outcomes
+    return node.outcomes
+  }
+}
+
 /** Count of the nodes inside. */
 export function countInside(node: EditNode): number {
   return allNodes(node).length - 1

@@ -80,7 +80,7 @@ function copyOf(original: EditNode, path: string, newName: NewName): EditNode {
 
 /** A copy has neither the notes nor, inside, the positions of its original. */
 function withoutLayout(node: EditNode): EditNode {
-  return { ...node, position: null, notes: '', children: node.children.map(withoutLayout) }
+  return { ...node, position: null, notes: '', canvas_notes: {}, children: node.children.map(withoutLayout) }
 }
 
 /** The same node with all inside at another path. */

@@ -40,6 +40,7 @@ export function node(path: string, outcomes: readonly string[], more: Partial<Ed
     role: '',
     post: null,
     notes: '',
+    canvas_notes: {},
     userdata: {},
     settings: {},
     line: 1,

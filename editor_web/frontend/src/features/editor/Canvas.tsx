@@ -25,6 +25,7 @@ import type { CanvasEdge, CanvasNode } from './elements'
 import { LEAST } from './viewport'
 import { FlowOverlay } from './FlowOverlay'
 import { NodeMenu } from './NodeMenu'
+import { FreeNoteOverlay } from './FreeNoteOverlay'
 import { NoteOverlay } from './NoteOverlay'
 import { SelectionBar } from './SelectionBar'
 import { useEditor } from './store'
@@ -65,6 +66,7 @@ const MAP = (
 const OVERLAYS = (
   <>
     <FlowOverlay />
+    <FreeNoteOverlay />
     <NoteOverlay />
     <SelectionBar />
     <NodeMenu />

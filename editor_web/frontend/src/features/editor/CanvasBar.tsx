@@ -8,6 +8,7 @@ import {
   IconMap,
   IconMinus,
   IconNote,
+  IconNotes,
   IconPlus,
   IconSelect,
   IconSquarePlus,
@@ -20,6 +21,7 @@ import { focusNode } from './actions'
 import { openAddPalette } from './paletteRequests'
 import { trackViewportMotion } from './viewportMotion'
 import { openOther } from './pageActions'
+import { addFreeNote } from './freeNotes'
 import { toggleNotes, useNotes } from './notes'
 import { referrerOf } from './references'
 import { toggleDataFlow, useDataFlow } from './dataFlow'
@@ -61,6 +63,9 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       </Tool>
       <Tool label="Notes on the canvas" isPressed={hasNotes} onPress={toggleNotes}>
         <IconNote size={17} />
+      </Tool>
+      <Tool label="Add a free note" command="free-note" onPress={addFreeNote}>
+        <IconNotes size={17} />
       </Tool>
       <Tool label="Auto-layout" command="layout" onPress={() => void layOutAnew()}>
         <IconHierarchy3 size={17} />

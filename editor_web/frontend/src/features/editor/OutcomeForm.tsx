@@ -6,7 +6,7 @@ import { setField } from '../../document/editing/edits'
 import { connect, disconnect } from './actions'
 import { performOn } from './apply'
 import { Section } from './Section'
-import { declaredOutcomes } from './useArrangement'
+import { declaredOutcomes } from '../../document/editing/expansion'
 import { draftOf, rootOf, useEditor } from './store'
 
 const LEVELS = ['off', 'low', 'high', 'full'] as const

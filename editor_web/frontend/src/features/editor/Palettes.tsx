@@ -9,7 +9,7 @@ import { openPortPalette } from './paletteRequests'
 import { replaceType } from './typeReplacement'
 import { ChoiceBox, type Choice } from '../../components/ChoiceBox'
 import { KindIcon } from '../../components/KindIcon'
-import { declaredOutcomes } from './useArrangement'
+import { declaredOutcomes } from '../../document/editing/expansion'
 import { draftOf, editor, rootOf, setEditor, useEditor, type PaletteRequest } from './store'
 
 export function Palettes() {

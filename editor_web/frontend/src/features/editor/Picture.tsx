@@ -1,14 +1,15 @@
 /** A behavior as one standing drawing, as the canvas shows it: for comparing versions and for files. */
 import { getSmoothStepPath, Position } from '@xyflow/react'
 import type { ReactNode } from 'react'
-import { roundedPath } from '../../document/geometry'
+import { moved, roundedPath } from '../../document/geometry'
 import type { Marking } from '../../document/editing/changes'
+import { noteAt, noteId } from '../../document/editing/canvasNotes'
 import { portY } from '../../document/editing/measure'
-import { isFailure } from '../../document/editing/model'
+import { allNodes, isFailure } from '../../document/editing/model'
 import type { Box, Point, Size } from '../../document/geometry'
 import { canvasEdges, canvasNodes, type CanvasNode, type DrawnInput } from './elements'
 import { nodeBoxes } from './nodeBoxes'
-import { colourOf, Frame, Leaf, Pill, Rules, Twig, type Palette } from './pictureParts'
+import { colourOf, Frame, Leaf, Paper, Pill, Rules, Twig, type Palette } from './pictureParts'
 
 export interface PictureProps {
   readonly drawn: DrawnInput & { readonly arrangement: { readonly size: Size } }
@@ -23,7 +24,8 @@ const MARGIN = 26
 export function Picture({ drawn, title, palette, markings, onPick }: PictureProps) {
   const nodes = canvasNodes(drawn)
   const boxes = nodeBoxes(nodes)
-  const bounds = around([...boxes.values()], [...drawn.arrangement.routes.values()].flat())
+  const notes = notesOf(drawn, boxes)
+  const bounds = around([...boxes.values(), ...notes.map(({ box }) => box)], [...drawn.arrangement.routes.values()].flat())
   const edges = canvasEdges(drawn, [])
   return (
     <svg
@@ -36,11 +38,13 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
     >
       <title>{title}</title>
       <rect {...bounds} style={{ fill: palette.canvas }} />
+      {notes.map((each) => each.isOutside && <Paper key={each.id} {...each} palette={palette} />)}
       {nodes
         .filter((node) => node.type === 'frame')
         .map((node) => (
           <Frame key={node.id} node={node} box={boxOf(boxes, node.id)} palette={palette} mark={markings?.get(node.id)} onPick={onPick} />
         ))}
+      {notes.map((each) => !each.isOutside && <Paper key={each.id} {...each} palette={palette} />)}
       {edges.map((edge) => {
         const source = boxes.get(edge.source)
         const target = boxes.get(edge.target)
@@ -103,6 +107,19 @@ export function Picture({ drawn, title, palette, markings, onPick }: PictureProp
         }
       })}
     </svg>
+  )
+}
+
+/** The free notes of all containers whose inside is drawn; those outside of every frame lie below the frames. */
+function notesOf({ scope, arrangement }: DrawnInput, boxes: ReadonlyMap<string, Box>) {
+  return allNodes(scope).flatMap((holder) =>
+    Object.keys(holder.canvas_notes).flatMap((name) => {
+      const ref = { path: holder.path, name }
+      const [note, own] = [noteAt(holder, ref), arrangement.boxes.get(noteId(ref))]
+      const isOutside = holder === scope
+      const frame = isOutside ? { x: 0, y: 0 } : boxes.get(holder.path)
+      return note && own && frame ? [{ id: noteId(ref), note, isOutside, box: { ...own, ...moved(own, frame) } }] : []
+    }),
   )
 }
 

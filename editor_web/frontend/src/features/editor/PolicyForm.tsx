@@ -8,7 +8,7 @@ import { perform, performOn } from './apply'
 import { FormLine } from './FormParts'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
-import { declaredOutcomes } from './useArrangement'
+import { declaredOutcomes } from '../../document/editing/expansion'
 import { draftOf, rootOf, useEditor } from './store'
 
 export function PolicyForm({ node, parent }: { node: EditNode; parent: EditNode | undefined }) {

@@ -2,6 +2,7 @@
 import { Box, Code, Flex, Group, SimpleGrid, Stack, Tabs, Text } from '@mantine/core'
 import { useEffect, useMemo, useState, type ReactNode } from 'react'
 import type { DocumentDiff } from '../../api/types'
+import { layOutByElk } from '../../components/elk'
 import { containersOfMarks, markingsOf, meaningful, wordsOfChange, type Marking } from '../../document/editing/changes'
 import type { EditNode } from '../../document/editing/model'
 import { drawingOf, openWith, type Drawing } from './drawing'
@@ -142,7 +143,7 @@ function Drawn({ of, markings, rowPx }: { of: Shown; markings: ReadonlyMap<strin
     // Beside one another there is little room: what is marked is shown, the rest stays closed.
     const needed = containersOfMarks(markings)
     const isOpen = rowPx < ROW_PX ? (path: string) => needed.has(path) : openWith(root)
-    drawingOf(root, outcomes, isOpen, rowPx).then(
+    drawingOf(root, outcomes, isOpen, rowPx, layOutByElk).then(
       (made) => isCurrent && setDrawing(made),
       (error: unknown) => isCurrent && setProblem(String(error)),
     )

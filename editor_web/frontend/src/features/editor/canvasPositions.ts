@@ -5,14 +5,15 @@ import type { Arrangement } from '../../document/editing/arrange'
 type Places = Omit<Arrangement, 'size'>
 
 const NOTHING: Places = { boxes: new Map(), outer: new Set(), routes: new Map(), origins: new Map() }
-const places = pageStore(() => NOTHING)
+/** For what is drawn at places that it gives. */
+export const useCanvasPlaces = pageStore(() => NOTHING)
 
 /** Say what is drawn now. */
 export function setCanvasPositions(arrangement: Places): void {
-  places.setState(arrangement, true)
+  useCanvasPlaces.setState(arrangement, true)
 }
 
 /** Boxes relative to their frames, and what to take off to get positions of the document. */
 export function canvasBoxes(): Places {
-  return places.getState()
+  return useCanvasPlaces.getState()
 }

@@ -37,6 +37,7 @@ import { openReferred, pageActions } from './pageActions'
 import { goToProblem } from './problems'
 import { toggleReference } from './references'
 import { discard, save } from './session'
+import { addFreeNote } from './freeNotes'
 import { toggleNotes, writeNote } from './notes'
 import { showSourceOf } from './stateSource'
 import { openReplacePalette } from './typeReplacement'
@@ -70,6 +71,7 @@ const ACTIONS: Readonly<Record<EditorCommandId, Action>> = {
   rename: { needs: 'node', run: () => withChosen((path) => setEditor({ renaming: path })) },
   disable: { needs: 'nodes', run: () => void toggleDisabled() },
   note: { run: () => writeNote() },
+  'free-note': { run: addFreeNote },
   remove: { run: () => void remove() },
   duplicate: { needs: 'nodes', run: () => void duplicate() },
   copy: { needs: 'nodes', run: () => void copy() },

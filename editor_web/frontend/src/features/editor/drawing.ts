@@ -1,10 +1,9 @@
 /** Laying out a whole behavior that is drawn once: a version, or a file to be taken along. */
-import { layOutByElk } from '../../components/elk'
+import type { LayoutCall } from '../../document/elkGraph'
 import { arrange, type Arrangement } from '../../document/editing/arrange'
-import { expandedByDefault } from '../../document/editing/expansion'
+import { declaredOutcomes, expandedByDefault } from '../../document/editing/expansion'
 import type { EditNode } from '../../document/editing/model'
 import type { DrawnInput } from './elements'
-import { declaredOutcomes } from './useArrangement'
 
 export interface Drawing extends DrawnInput {
   readonly arrangement: Arrangement
@@ -15,9 +14,10 @@ export async function drawingOf(
   outcomes: readonly string[],
   isOpen: (path: string) => boolean,
   rowLimit: number,
+  call: LayoutCall,
 ): Promise<Drawing> {
   const declared = declaredOutcomes(root, outcomes)
-  const arrangement = await arrange(root, { isOpen, declared, rowLimit, call: layOutByElk })
+  const arrangement = await arrange(root, { isOpen, declared, rowLimit, call })
   return { root, scope: root, arrangement, isOpen, declared }
 }
 

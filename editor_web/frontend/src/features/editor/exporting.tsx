@@ -4,10 +4,11 @@ import { flushSync } from 'react-dom'
 import { expansionOf, rowLimitOf } from '../../document/editing/expansion'
 import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
+import { layOutByElk } from '../../components/elk'
 import { tokensOf } from '../../components/tokens'
 import { drawingOf } from './drawing'
 import { Picture } from './Picture'
-import { OF_PAGE, type Palette } from './pictureParts'
+import { paletteOf } from './pictureParts'
 import { draftOf, editor, showEditorRefusal, rootOf, showEditorNotice } from './store'
 
 const SCALE = 2
@@ -33,22 +34,17 @@ async function pictureOfDraft(): Promise<string> {
   if (!root) throw new Error('there is nothing to draw yet')
   const { document: info } = draftOf(state)
   const isOpen = expansionOf(root, state.opened, state.keptOpen)
-  const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, rowLimitOf(root, isOpen))
+  const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, rowLimitOf(root, isOpen), layOutByElk)
   const host = document.createElement('div')
   const page = createRoot(host)
-  flushSync(() => page.render(<Picture drawn={drawn} title={info?.name || state.id} palette={colours()} />))
+  flushSync(() =>
+    page.render(<Picture drawn={drawn} title={info?.name || state.id} palette={paletteOf(tokensOf(document.documentElement))} />),
+  )
   const element = host.querySelector('svg')
   if (!element) throw new Error('the behavior could not be drawn')
   const text = new XMLSerializer().serializeToString(element)
   page.unmount()
   return `<?xml version="1.0" encoding="UTF-8"?>\n${text}\n`
-}
-
-/** What the variables of the page stand for now: a file of its own has none. */
-function colours(): Palette {
-  const token = tokensOf(document.documentElement)
-  const value = (variable: string) => token(variable.slice('var(--'.length, -1))
-  return Object.fromEntries(Object.entries(OF_PAGE).map(([part, variable]) => [part, value(String(variable))])) as unknown as Palette
 }
 
 async function pngOf(svg: string): Promise<Blob> {

@@ -3,6 +3,7 @@ import { FRAME_HEAD, pillWidth, portY, RULE_HEIGHT, rowsHeight, tableHeight } fr
 import type { Marking } from '../../document/editing/changes'
 import { isFailure, type EditNode } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
+import { linesOf, type CanvasNote } from '../../document/editing/canvasNotes'
 import type { Box } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 import type { CanvasNode, CardNode, PillNode } from './elements'
@@ -20,6 +21,13 @@ export interface Palette {
   readonly failed: string
   readonly done: string
   readonly changed: string
+  readonly ink: string
+  /** The paper of free notes by their colour. */
+  readonly yellow: string
+  readonly blue: string
+  readonly green: string
+  readonly pink: string
+  readonly grey: string
 }
 
 /** The colours of the page, also when its theme is changed. */
@@ -35,9 +43,29 @@ export const OF_PAGE: Palette = {
   failed: 'var(--failed)',
   done: 'var(--done)',
   changed: 'var(--stopped)',
+  ink: 'var(--ink)',
+  yellow: 'var(--paper)',
+  blue: 'var(--accent-soft)',
+  green: 'var(--done-soft)',
+  pink: 'var(--note-pink)',
+  grey: 'var(--note-grey)',
 }
 
-const SANS = "'Inter Variable', Inter, system-ui, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif"
+/** What the variables of the page stand for: a file of its own has none. */
+export function paletteOf(token: (name: string) => string): Palette {
+  const value = (variable: string) => token(variable.slice('var(--'.length, -1))
+  const entries = Object.entries(OF_PAGE).map(([part, variable]) => [part, inOldWords(value(String(variable)))])
+  return Object.fromEntries(entries) as Palette
+}
+
+/** `rgb(30 50 90 / 2.6%)` as programs know it that draw pictures and are no browsers. */
+function inOldWords(colour: string): string {
+  const [, r, g, b, percent] = /^rgb\((\d+) (\d+) (\d+) \/ ([\d.]+)%\)$/.exec(colour) ?? []
+  return percent === undefined ? colour : `rgba(${r}, ${g}, ${b}, ${Number(percent) / 100})`
+}
+
+const SANS =
+  "'Inter Variable', Inter, system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'Liberation Sans', 'Noto Sans', 'DejaVu Sans', sans-serif"
 const MONO = "ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace"
 
 export interface PartProps {
@@ -220,6 +248,24 @@ export function Rules({ node, box, palette }: { node: EditNode; box: Box; palett
           <tspan x={box.x + 12 + Math.max(80, (outcome ?? '').length * 7.5 + 14)} style={{ fill: palette.quiet }}>
             {fitted(when ?? '', (box.width - 110) / 6.2)}
           </tspan>
+        </text>
+      ))}
+    </g>
+  )
+}
+
+const NOTE_LINE = 16.2
+
+/** A free note, as much of its text as there is room for. */
+export function Paper({ note, box, palette }: { note: CanvasNote; box: Box; palette: Palette }) {
+  const lines = linesOf(note.text, Math.max(1, Math.floor((box.width - 20) / 6.2)))
+  const room = Math.max(1, Math.floor((box.height - 14) / NOTE_LINE))
+  return (
+    <g data-note>
+      <rect {...box} rx={4} style={{ fill: palette[note.colour], stroke: palette.ink, strokeOpacity: 0.35 }} />
+      {lines.slice(0, room).map((line, index) => (
+        <text key={index} x={box.x + 11} y={box.y + 20 + index * NOTE_LINE} style={{ fontFamily: SANS, fontSize: 12, fill: palette.ink }}>
+          {index === room - 1 && lines.length > room ? `${line} …` : line}
         </text>
       ))}
     </g>

@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from 'react'
 import { layOutByElk, warmUpElk } from '../../components/elk'
 import { arrange } from '../../document/editing/arrange'
 import { allNodes, type EditNode } from '../../document/editing/model'
-import { expandedByDefault, expansionOf, rowLimitOf } from '../../document/editing/expansion'
+import { declaredOutcomes, expandedByDefault, expansionOf, rowLimitOf } from '../../document/editing/expansion'
 import { useIsMoving } from './viewportMotion'
 import { draftOf, editor, rootOf, scopeOf, setEditor, useEditor } from './store'
 import type { DrawnInput } from './elements'
@@ -16,14 +16,6 @@ export interface Arranged extends DrawnInput {
   readonly view: string
   /** Which containers had been opened and closed by hand. */
   readonly opened: ReadonlyMap<string, boolean>
-}
-
-/** Outcomes of a machine that nothing inside leads to yet: those of the behavior, and those used outside. */
-export function declaredOutcomes(root: EditNode, outcomes: readonly string[]): (node: EditNode) => readonly string[] {
-  return (node) => {
-    if (node === root) return outcomes
-    return node.outcomes
-  }
 }
 
 /** The arrangement of what fills the canvas: what the document says, and which containers are open, is all it depends on. */

@@ -1,0 +1,75 @@
+"""`flexcell picture`: a whole behavior as a file, drawn by the program of the page in a JavaScript engine."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+import hatch_build
+from engine.editing.picture import PROGRAM
+from tests.engine.cli.command import flexcell
+
+BEHAVIOR = Path(__file__).parents[5] / "behaviors" / "test_cylinder" / "test_cylinder.yaml"
+SVG = "{http://www.w3.org/2000/svg}"
+NOTE = """
+canvas_notes:
+  root:
+    n1: {text: "Fill the <outlet> first", position: [0, -120], size: [200, 90], colour: green}
+"""
+
+pytestmark = pytest.mark.skipif(
+    not (hatch_build.STATIC.parent / PROGRAM).is_file(), reason="the page is not built on this machine"
+)
+
+
+def drawn(text: str) -> list[str]:
+    """The words in a picture."""
+    return ["".join(each.itertext()) for each in ET.fromstring(text).iter(f"{SVG}text")]
+
+
+def test_a_behavior_is_drawn_with_its_notes_in_either_theme(tmp_path: Path) -> None:
+    pytest.importorskip("quickjs", reason="the JavaScript engine of the extra `picture` is not installed")
+    shutil.copytree(BEHAVIOR.parent, tmp_path / "shop")
+    file = tmp_path / "shop" / BEHAVIOR.name
+    file.write_text(file.read_text() + NOTE)
+    said = flexcell("picture", file.relative_to(tmp_path), "-o", "made/light.svg", cwd=tmp_path)
+    assert (said.code, said.err) == (0, "wrote made/light.svg\n")
+    light = (tmp_path / "made/light.svg").read_text()
+    words = drawn(light)
+    assert "Fill the <outlet> first" in words
+    assert {"home", "drop_load", "expect_cylinder"} <= {each.split()[0] for each in words if each}
+    assert flexcell("picture", file, "-o", "dark.svg", "--dark", cwd=tmp_path).code == 0
+    dark = (tmp_path / "dark.svg").read_text()
+    assert drawn(dark) == words
+    assert re.findall(r"fill:#\w+", dark) != re.findall(r"fill:#\w+", light)
+    again = flexcell("picture", file, "-o", "again.svg", cwd=tmp_path)
+    assert again.code == 0
+    assert (tmp_path / "again.svg").read_text() == light
+
+
+def test_a_png_has_twice_as_many_pixels_and_other_names_are_refused(tmp_path: Path) -> None:
+    pytest.importorskip("quickjs", reason="the JavaScript engine of the extra `picture` is not installed")
+    pytest.importorskip("resvg_py", reason="what draws pixels is not installed")
+    assert flexcell("picture", BEHAVIOR, "-o", "a.svg", cwd=tmp_path).code == 0
+    said = flexcell("picture", BEHAVIOR, "-o", "a.png", cwd=tmp_path)
+    assert said.code == 0, said.err
+    made = (tmp_path / "a.png").read_bytes()
+    assert made[:8] == b"\x89PNG\r\n\x1a\n"
+    width = float(ET.fromstring((tmp_path / "a.svg").read_text()).attrib["width"])
+    assert int.from_bytes(made[16:20]) == pytest.approx(2 * width, abs=2)
+    said = flexcell("picture", BEHAVIOR, "-o", "a.pdf", cwd=tmp_path)
+    assert (said.code, said.err) == (2, "flexcell: a.pdf is no picture (give a name that ends in .svg or .png)\n")
+
+
+def test_a_document_that_cannot_be_read_is_said(tmp_path: Path) -> None:
+    said = flexcell("picture", "none.yaml", "-o", "a.svg", cwd=tmp_path)
+    assert said.code == 2
+    assert "none.yaml: cannot read this file" in said.err
+    (tmp_path / "empty.yaml").write_text("flexcell: 1\nname: x\noutcomes: [done]\n")
+    said = flexcell("picture", "empty.yaml", "-o", "a.svg", cwd=tmp_path)
+    assert (said.code, said.err) == (2, "flexcell: empty.yaml: this document has no nodes\n")
+    assert not (tmp_path / "a.svg").exists()
