@@ -40,6 +40,7 @@ CELL = BEHAVIORS / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
 SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
+NOTES = "canvas_notes:"
 TAGS = "\ntags:"
 FACTORS = "\nfactors:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:", "unknown_bodies:")
@@ -181,9 +182,20 @@ def test_requirements_are_taken(tmp_path: Path, text: str) -> None:
     assert len(sweep.document.requirements) == text.count("\n  - ")
 
 
+@shown(NOTES)
+def test_free_notes_are_taken_beside_a_behavior(tmp_path: Path, text: str) -> None:
+    """Their container is that of the page: a machine called `transfer`."""
+    inside = "machine: {initial: a, states: {a: {state: bench.Wait, transitions: {done: finished}}}}"
+    root = f"root: {{machine: {{initial: transfer, states: {{transfer: {{{inside}}}}}}}}}"
+    behavior = parse_behavior(
+        f"flexcell: 1\nname: noted\noutcomes: [finished]\n{root}\n{text}", file=tmp_path / "n.yaml"
+    )
+    assert sum(len(notes) for notes in behavior.document.canvas_notes.values()) == text.count("text:")
+
+
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
     kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS)
-    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:", "require:")
+    begun = (NOTES, *PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:", "require:")
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []
