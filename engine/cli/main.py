@@ -68,6 +68,11 @@ def main() -> None:
         # The reader of the output, such as `head`, has closed the pipe; no one can read a message.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(ExitCode.SUCCESS)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        sys.stderr.write(f"flexcell: {error.filename}: {error.strerror} (check the path and its permissions)\n")
+        sys.exit(ExitCode.BAD_INPUT)
 
 
 def _others(error: FlexcellError) -> str:

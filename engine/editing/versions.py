@@ -115,12 +115,12 @@ class VersionHistory:
         return sorted(kept, key=lambda each: (each.stamp, each.digest))
 
 
-def write_atomically(file: Path, text: str) -> None:
+def write_atomically(file: Path, content: str | bytes) -> None:
     """Replace a file atomically: readers see the old or the new content, even after a power failure."""
     fresh = file.with_name(f".{file.name}.new")
     try:
         with fresh.open("wb") as stream:
-            stream.write(text.encode("utf-8"))
+            stream.write(content.encode("utf-8") if isinstance(content, str) else content)
             stream.flush()
             os.fsync(stream.fileno())
         if file.exists():

@@ -25,9 +25,10 @@ def check_parameters(
 
     Args:
         subject: The behavior.
-        run_parameters: The parameters of a run of it; others have their defaults.
+        run_parameters: The parameters of a run of it; others, and those that their declaration refuses, have their
+            defaults.
     """
-    defaults = {**default_values(subject), **(run_parameters or {})}
+    defaults = default_values(subject) | _accepted(subject, run_parameters or {})
     for placed in subject.due:
         signature = subject.signature(placed.node)
         if signature is None:
@@ -69,6 +70,16 @@ def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
         name: parameter.normal(parameter.default)
         for name, parameter in declared
         if not parameter.required and parameter.problem(parameter.default) is None
+    }
+
+
+def _accepted(subject: AnalyzedBehavior, given: Mapping[str, object]) -> dict[str, object]:
+    """Return the values that the declared parameters take."""
+    declared = subject.behavior.parameters
+    return {
+        name: declared[name].normal(value)
+        for name, value in given.items()
+        if name in declared and declared[name].problem(value) is None
     }
 
 

@@ -11,11 +11,13 @@ import typer
 from engine.authoring.yaml_export import to_yaml
 from engine.cli.inputs import read_behavior
 from engine.document.python_name import is_python_name
+from engine.document.text.yaml_source import load_text
 from engine.editing.analysis.diagnostics import draw_document
 from engine.editing.picture import PictureRequest, draw_svg, png_of
 from engine.editing.project_context import ProjectContext
 from engine.editing.text.draft import Draft
 from engine.editing.text.outline import Outline
+from engine.editing.versions import write_atomically
 from engine.errors import DocumentError, FlexcellError
 from engine.registry import load_states
 
@@ -52,13 +54,17 @@ def picture(
     request = PictureRequest(graph=graph, document=analysis.document, scheme="dark" if dark else "light", all=all_)
     svg = draw_svg(request)
     made = svg.encode() if output.suffix.lower() == ".svg" else png_of(svg)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_bytes(made)
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(output, made)
+    except OSError as error:
+        hint = "check its folder and the free space"
+        raise FlexcellError(f"the file cannot be written: {error.strerror}", where=output, hint=hint) from error
     sys.stderr.write(f"wrote {output}\n")
 
 
 def _text(behavior: Path) -> str:
     try:
-        return behavior.read_bytes().decode("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise DocumentError(f"cannot read this file: {error}", where=str(behavior)) from error
+        return load_text(behavior).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise DocumentError(f"this file is no text: {error}", where=str(behavior)) from error

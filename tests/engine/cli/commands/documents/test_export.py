@@ -96,3 +96,11 @@ def test_nothing_is_written_when_the_behavior_has_errors(folder: Path) -> None:
     said = flexcell("export", "cell_work.py:wrong", "-o", "wrong.yaml", cwd=folder)
     assert said.code == 2
     assert not (folder / "wrong.yaml").exists()
+
+
+def test_a_file_that_cannot_be_written_is_said_in_one_line(folder: Path) -> None:
+    (folder / "file").write_text("")
+    said = flexcell("export", "cell_work.py:rest", "-o", "file/rest.yaml", cwd=folder)
+    assert (said.code, said.err.count("\n")) == (2, 1)
+    assert "file: " in said.err
+    assert "check the path" in said.err

@@ -68,8 +68,16 @@ def test_a_png_has_twice_as_many_pixels_and_other_names_are_refused(tmp_path: Pa
 def test_a_document_that_cannot_be_read_is_said(tmp_path: Path) -> None:
     said = flexcell("picture", "none.yaml", "-o", "a.svg", cwd=tmp_path)
     assert said.code == 2
-    assert "none.yaml: cannot read this file" in said.err
+    assert said.err == "flexcell: none.yaml:1:1: cannot read this file: No such file or directory (check its path)\n"
     (tmp_path / "empty.yaml").write_text("flexcell: 1\nname: x\noutcomes: [done]\n")
     said = flexcell("picture", "empty.yaml", "-o", "a.svg", cwd=tmp_path)
     assert (said.code, said.err) == (2, "flexcell: empty.yaml: this document has no nodes\n")
     assert not (tmp_path / "a.svg").exists()
+
+
+def test_a_picture_that_cannot_be_written_is_said(tmp_path: Path) -> None:
+    pytest.importorskip("quickjs", reason="the JavaScript engine of the extra `picture` is not installed")
+    (tmp_path / "file").write_text("")
+    said = flexcell("picture", BEHAVIOR, "-o", "file/a.svg", cwd=tmp_path)
+    assert said.code == 2
+    assert said.err.startswith("flexcell: file/a.svg: the file cannot be written: ")
