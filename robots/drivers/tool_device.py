@@ -387,8 +387,3 @@ class ToolDevice(ABC, Generic[R, C, P]):
     def _publish_device(self) -> None:
         if self._bus is not None and self._open is not None:
             self._bus.topic(f"{self._name}/device", DeviceState).publish(self.device_state())
-
-
-def enable_words(name: str) -> str:
-    """Return the command by which a person permits motion."""
-    return f'flexcell bus call {name}/enable_device \'{{"reason": "…"}}\''

@@ -9,6 +9,7 @@ import tty
 from collections.abc import Callable
 from typing import Protocol
 
+from robots.drivers.emulation.tcp_server import TcpServer
 from robots.drivers.emulation.wire_faults import WireFaults, spoil
 
 _READ_BYTES = 4096
@@ -25,40 +26,14 @@ class ProtocolSession(Protocol):
 SessionMaker = Callable[[], ProtocolSession]
 
 
-class TcpStream:
-    """A TCP server that can be cut and restored at the same address."""
+class TcpStream(TcpServer):
+    """A protocol on a TCP address."""
 
     def __init__(self, new_session: SessionMaker, faults: WireFaults, *, host: str, port: int) -> None:
+        super().__init__(host=host, port=port)
         self._new_session = new_session
         self._faults = faults
-        self._host = host
-        self._port = port
-        self._server: asyncio.Server | None = None
-        self._writers: set[asyncio.StreamWriter] = set()
         self._connected: Callable[[], None] = lambda: None
-
-    @property
-    def clients(self) -> int:
-        """Number of open connections."""
-        return len(self._writers)
-
-    async def open(self) -> dict[str, object]:
-        """Listen; returns where."""
-        self._server = await asyncio.start_server(self._serve, self._host, self._port, reuse_address=True)
-        self._port = self._server.sockets[0].getsockname()[1]
-        return {"host": self._host, "port": self._port}
-
-    async def close(self) -> None:
-        """Stop listening and drop all connections."""
-        if self._server is not None:
-            self._server.close()
-            self._server = None
-        self.drop_clients()
-
-    def drop_clients(self) -> None:
-        """Drop all connections, and go on listening."""
-        for writer in tuple(self._writers):
-            writer.transport.abort()
 
     async def unplug(self) -> None:
         """Take the device away: nothing listens any more."""
@@ -73,18 +48,12 @@ class TcpStream:
         for writer in tuple(self._writers):
             deliver(message, self._faults, writer.write)
 
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Answer what a client sends."""
         session = self._new_session()
-        self._writers.add(writer)
         self._connected()
-        try:
-            while received := await reader.read(_READ_BYTES):
-                answer(session, received, self._faults, writer.write)
-        except ConnectionError:
-            pass  # the client, or a fault that we emulate, has dropped the connection
-        finally:
-            self._writers.discard(writer)
-            writer.close()
+        while received := await reader.read(_READ_BYTES):
+            answer(session, received, self._faults, writer.write)
 
 
 class PtyStream:

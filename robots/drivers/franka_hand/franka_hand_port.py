@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from itertools import count
 
-from engine.errors import RobotError
 from robots.drivers.franka_hand.franka_hand_motion import FrankaHandMotion
 from robots.drivers.franka_hand.franka_hand_reading import (
     CloseFingers,
@@ -16,7 +14,7 @@ from robots.drivers.franka_hand.franka_hand_reading import (
     StopFingers,
 )
 from robots.drivers.fresh_link import FreshLink, FreshReading
-from robots.drivers.tool_device import enable_words
+from robots.drivers.tool_command import require_free, require_values
 from robots.port import GripperSample
 
 MAX_WIDTH_M, MAX_FORCE_N = 0.08, 70.0
@@ -103,14 +101,10 @@ class FrankaHandPort:
         Raises:
             RobotError: it may not move, another motion is active, or a value is invalid.
         """
-        for what, value in (("width_m", width_m), ("speed_m_s", speed_m_s), ("force_n", force_n)):
-            if not math.isfinite(value) or value < 0.0 or (value == 0.0 and what != "width_m"):
-                raise RobotError(f"{what} cannot be {value}", where=self._name)
-        reading, reason = self._link.fresh(), self._blocked()
-        if reason:
-            raise RobotError(reason, where=self._name, hint=f"clear the cause, then: {enable_words(self._name)}")
-        if self.motion is not None:
-            raise RobotError("another motion is active", where=self._name, hint="wait for its end or cancel it")
+        positive = {"speed_m_s": speed_m_s, "force_n": force_n}
+        require_values(self._name, positive=positive, zero_or_more={"width_m": width_m})
+        reading = self._link.fresh()
+        require_free(self._name, blocked=self._blocked(), motion=self.motion)
         start_m, goal_m = reading.state.width_m, min(width_m, self.max_width_m)
         speed = min(MAX_SPEED_M_S, max(MIN_SPEED_M_S, speed_m_s))
         force = min(MAX_FORCE_N, force_n)

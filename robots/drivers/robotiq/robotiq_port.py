@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import math
 import time
 from collections.abc import Callable
 
-from engine.errors import RobotError
 from robots.drivers.fresh_link import FreshLink, FreshReading
 from robots.drivers.robotiq.gripper_registers import GripperCommand, GripperStatus, ObjectStatus
 from robots.drivers.robotiq.gripper_units import (
@@ -22,7 +20,7 @@ from robots.drivers.robotiq.gripper_units import (
     width_of_count,
 )
 from robots.drivers.robotiq.robotiq_motion import RobotiqMotion, stop_command
-from robots.drivers.tool_device import enable_words
+from robots.drivers.tool_command import require_free, require_values
 from robots.port import GripperSample
 
 _GRACE_S = 2.0
@@ -108,14 +106,10 @@ class RobotiqPort:
         Raises:
             RobotError: it may not move, another motion is active, or a value is invalid.
         """
-        for what, value in (("width_m", width_m), ("speed_m_s", speed_m_s), ("force_n", force_n)):
-            if not math.isfinite(value) or value < 0.0 or (value == 0.0 and what != "width_m"):
-                raise RobotError(f"{what} cannot be {value}", where=self._name)
-        status, reason = self._link.fresh(), self._blocked()
-        if reason:
-            raise RobotError(reason, where=self._name, hint=f"clear the cause, then: {enable_words(self._name)}")
-        if self.motion is not None:
-            raise RobotError("another motion is active", where=self._name, hint="wait for its end or cancel it")
+        positive = {"speed_m_s": speed_m_s, "force_n": force_n}
+        require_values(self._name, positive=positive, zero_or_more={"width_m": width_m})
+        status = self._link.fresh()
+        require_free(self._name, blocked=self._blocked(), motion=self.motion)
         self._command = command = GripperCommand(
             activate=True,
             go=True,

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import math
 import time
 from bisect import bisect_right
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from engine.errors import RobotError
 from robots.drivers.fresh_link import FreshLink, FreshReading
 from robots.drivers.softhand.hand_reading import HandCommand, HandReading, HandReference
 from robots.drivers.softhand.softhand_motion import HandGoal, SoftHandMotion
-from robots.drivers.tool_device import enable_words
+from robots.drivers.tool_command import require_free, require_values
 from robots.port import HandSample
 
 _UNKNOWN = "?"
@@ -121,16 +119,11 @@ class SoftHandPort:
         Raises:
             RobotError: it may not move, another motion is active, or a value is invalid.
         """
-        for what, value in (("share", share), ("time_s", time_s)):
-            if not math.isfinite(value) or value < 0.0 or (value == 0.0 and what == "time_s"):
-                raise RobotError(f"{what} cannot be {value}", where=self._name)
+        require_values(self._name, positive={"time_s": time_s}, zero_or_more={"share": share})
         self._link.fresh()
-        latest, reason, calibration = self._link.latest, self._blocked(), self._calibration
+        require_free(self._name, blocked=self._blocked(), motion=self.motion)
+        latest, calibration = self._link.latest, self._calibration
         assert latest is not None
-        if reason:
-            raise RobotError(reason, where=self._name, hint=f"clear the cause, then: {enable_words(self._name)}")
-        if self.motion is not None:
-            raise RobotError("another motion is active", where=self._name, hint="wait for its end or cancel it")
         ticks = round(min(1.0, share) * calibration.closed_ticks)
         fastest = calibration.closed_ticks / calibration.stroke_s
         # A motion of zero length works at any speed.

@@ -13,6 +13,7 @@ import msgspec
 
 from robots.drivers.abb.emulation.controller_panel import PanelRefusal
 from robots.drivers.abb.emulation.rws_resources import NoSuchResource, RwsResources
+from robots.drivers.emulation.tcp_server import TcpServer
 from robots.drivers.emulation.wire_faults import WireFaults, spoil
 
 _REALM = "validusers@robapi.abb"
@@ -21,7 +22,7 @@ _PARTS = re.compile(r'(\w+)=(?:"([^"]*)"|([^\s,]+))')
 _REASONS = {200: "OK", 204: "No Content", 400: "Bad Request", 401: "Unauthorized", 404: "Not Found", 503: "Busy"}
 
 
-class RwsServer:
+class RwsServer(TcpServer):
     """Serves any number of clients; `faults` are those of the whole controller, `own_faults` of this port alone.
 
     Args:
@@ -36,52 +37,26 @@ class RwsServer:
     def __init__(
         self, resources: RwsResources, faults: WireFaults, *, host: str, port: int, user: str, password: str
     ) -> None:
+        super().__init__(host=host, port=port)
         self._resources = resources
         self._faults = faults
         self.own_faults = WireFaults()
-        self._host = host
-        self.port = port
         self._user = user
         self._key = _md5(f"{user}:{_REALM}:{password}")
         self._nonce = secrets.token_hex(16)
-        self._server: asyncio.Server | None = None
-        self._writers: set[asyncio.StreamWriter] = set()
         self.requests = 0
         """Number of authenticated requests."""
 
-    @property
-    def clients(self) -> int:
-        """Number of connections."""
-        return len(self._writers)
-
-    async def open(self) -> None:
-        """Listen, if it does not."""
-        if self._server is not None:
-            return
-        self._server = await asyncio.start_server(self._serve, self._host, self.port, reuse_address=True)
-        self.port = int(self._server.sockets[0].getsockname()[1])
-
-    async def close(self) -> None:
-        """Stop listening and drop all connections."""
-        if self._server is not None:
-            self._server.close()
-            self._server = None
-        for writer in tuple(self._writers):
-            writer.transport.abort()
-
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._writers.add(writer)
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Answer the requests of a client."""
         try:
             while head := await reader.readuntil(b"\r\n\r\n"):
                 length = int(_head(head)[1].get("content-length", "0"))
                 if not 0 <= length <= _MOST_BODY:
                     break
                 self._deliver(self.answer(head, await reader.readexactly(length)), writer)
-        except (ConnectionError, asyncio.IncompleteReadError, asyncio.LimitOverrunError, ValueError):
-            pass  # the client has gone, is dropped by a fault, or speaks something else
-        finally:
-            self._writers.discard(writer)
-            writer.close()
+        except (asyncio.IncompleteReadError, asyncio.LimitOverrunError, ValueError):
+            pass  # the client has gone, or speaks something else
 
     def _deliver(self, reply: bytes, writer: asyncio.StreamWriter) -> None:
         faults, own = self._faults, self.own_faults

@@ -49,7 +49,7 @@ class EmulatedPort(Protocol):
         """Number of connections."""
         ...
 
-    async def open(self) -> None:
+    async def open(self) -> object:
         """Listen, if it does not."""
         ...
 

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from robots.drivers.abb.emulation.controller_sessions import SessionClosed
 from robots.drivers.emulation.byte_stream import answer
+from robots.drivers.emulation.tcp_server import TcpServer
 from robots.drivers.emulation.wire_faults import WireFaults, spoil
 
 _READ_BYTES = 4096
@@ -22,7 +23,7 @@ class PortSession(Protocol):
         ...
 
 
-class SingleClientServer:
+class SingleClientServer(TcpServer):
     """One port of the controller.
 
     Args:
@@ -42,49 +43,23 @@ class SingleClientServer:
         port: int,
         messages: Callable[[], bytes] | None = None,
     ) -> None:
+        super().__init__(host=host, port=port)
         self._new_session = new_session
         self._faults = faults
-        self._host = host
-        self.port = port
         self._messages = messages
-        self._server: asyncio.Server | None = None
         self._turn = asyncio.Lock()
-        self._writers: set[asyncio.StreamWriter] = set()
 
-    @property
-    def clients(self) -> int:
-        """Number of connections, with those that wait."""
-        return len(self._writers)
-
-    async def open(self) -> None:
-        """Listen, if it does not."""
-        if self._server is not None:
-            return
-        self._server = await asyncio.start_server(self._serve, self._host, self.port, reuse_address=True)
-        self.port = int(self._server.sockets[0].getsockname()[1])
-
-    async def close(self) -> None:
-        """Stop listening and drop all connections."""
-        if self._server is not None:
-            self._server.close()
-            self._server = None
-        for writer in tuple(self._writers):
-            writer.transport.abort()
-
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._writers.add(writer)
-        try:
-            async with self._turn:
-                if self._messages is not None and not writer.is_closing():
-                    self._send(writer, self._messages)
-                session = self._new_session()
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Run the program for a client, once those before it have gone."""
+        async with self._turn:
+            if self._messages is not None and not writer.is_closing():
+                self._send(writer, self._messages)
+            session = self._new_session()
+            try:
                 while received := await reader.read(_READ_BYTES):
                     answer(session, received, self._faults, writer.write)
-        except (ConnectionError, SessionClosed):
-            pass  # the client, a fault that we emulate, or the program has ended the connection
-        finally:
-            self._writers.discard(writer)
-            writer.close()
+            except SessionClosed:
+                pass  # the program has ended the connection
 
     def _send(self, writer: asyncio.StreamWriter, messages: Callable[[], bytes]) -> None:
         """Send now, and again after each period until the connection is closed."""
