@@ -127,7 +127,7 @@ def test_an_emulator_that_cannot_be_meant_is_refused(tmp_path: Path, arguments: 
 def test_emulators_are_listed_with_their_options(tmp_path: Path) -> None:
     text = flexcell("emulate", "--list", cwd=tmp_path).stdout
     assert "\nrobotiq: " in text
-    assert "no physics" in text
+    assert "physics in an emulated cell only" in text
     assert "  object_m=" in text
 
 
