@@ -165,7 +165,7 @@ class UrJointController:
             raise lost(UrFault.LINK_CUT, str(error)) from error
         if not is_sent:
             self._is_enabled = False
-            raise refused(self._dashboard_fault() or UrFault.PROGRAM_ENDED, "a set point was not taken")
+            raise refused(self._dashboard_fault() or self._end_fault(), "a set point was not taken")
 
     def stop(self) -> None:
         """End the program by the dashboard, on a connection that the library knows nothing of."""
@@ -220,6 +220,13 @@ class UrJointController:
             if time.monotonic() > limit_s:
                 raise refused(UrFault.PROGRAM_ENDED, "the control script does not start")
             time.sleep(self._period_s)
+
+    def _end_fault(self) -> UrFault:
+        """Return how the program has ended: what the library knows may be newer than what was read last."""
+        receive, limit_s = self._receive, time.monotonic() + 2.0 * self._period_s
+        while receive.getTimestamp() == self._time_s and time.monotonic() < limit_s:
+            time.sleep(_POLL_S)
+        return UrFault.PROGRAM_PAUSED if receive.getRuntimeState() == _PAUSED else UrFault.PROGRAM_ENDED
 
     def _end_servoing(self) -> None:
         if self._is_servoing:

@@ -91,3 +91,11 @@ def press(host: str, command: str) -> str:
         answer = lines.readline().strip()
         lines.close()
     return answer
+
+
+def start_other(controller: EmulatedController) -> None:
+    """Start another program, as a person does, and wait until it runs."""
+    with socket.create_connection((controller.host, 30002), timeout=ANSWER_LIMIT_S) as connection:
+        connection.sendall(b"def other():\n  while True:\n    sync()\n  end\nend\n")
+        while controller.state()["program"] != "other":
+            pass

@@ -5,15 +5,14 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
-import socket
 import threading
 
 import pytest
 
 from engine.errors import RobotError
 from tests.robots.drivers.arm_under_test import CLIENTS, connected
-from tests.robots.drivers.universal_robots.emulated_controller import ANSWER_LIMIT_S, EmulatedController
-from tests.robots.drivers.universal_robots.faulty_ur_arm import press
+from tests.robots.drivers.universal_robots.emulated_controller import EmulatedController
+from tests.robots.drivers.universal_robots.faulty_ur_arm import press, start_other
 from tests.robots.sim.sim_cell import until
 
 
@@ -21,14 +20,6 @@ from tests.robots.sim.sim_cell import until
 def client(request: pytest.FixtureRequest) -> str:
     """The client of the driver."""
     return str(request.param)
-
-
-def start_other(controller: EmulatedController) -> None:
-    """Start another program, as a person does, and wait until it runs."""
-    with socket.create_connection((controller.host, 30002), timeout=ANSWER_LIMIT_S) as connection:
-        connection.sendall(b"def other():\n  while True:\n    sync()\n  end\nend\n")
-        while controller.state()["program"] != "other":
-            pass
 
 
 async def test_closing_leaves_the_program_that_a_person_has_started_meanwhile(client: str) -> None:

@@ -27,7 +27,7 @@ from tests.robots.drivers.fault_cases import FaultCase
 from tests.robots.drivers.faulty_process_arm import faulty_process_arm
 from tests.robots.drivers.universal_robots.client_library import ClientLibrary, needs_client_library
 from tests.robots.drivers.universal_robots.emulated_controller import EmulatedController, read_line
-from tests.robots.drivers.universal_robots.faulty_ur_arm import FaultyUrArm
+from tests.robots.drivers.universal_robots.faulty_ur_arm import FaultyUrArm, press, start_other
 from tests.robots.drivers.universal_robots.ur_fault_cases import CASES
 from tests.robots.sim.sim_cell import smooth, until
 from tests.tiers import ROOT
@@ -93,6 +93,12 @@ async def test_an_arm_is_not_enabled_while_its_controller_is_stopped(client: str
             await asyncio.to_thread(arm.do, case)
             # A set point that is refused may be noticed first.
             await until(lambda: bool(connection.problem))
+            if name == "program paused":
+                assert name in connection.problem
+                # The driver has ended its own program where a set point was refused.
+                await asyncio.to_thread(start_other, controller)
+                await asyncio.to_thread(press, controller.host, "pause")
+                await connection.report(readings=5)
             stopped = controller.state()
             with pytest.raises(RobotError, match=name) as refused:
                 await connection.enable()
