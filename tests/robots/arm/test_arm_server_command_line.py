@@ -43,7 +43,7 @@ def test_a_message_is_published_as_often_as_requested() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("left/jog", '{"speed": 1}'), "this is not a JogCommand: Object contains unknown field `speed`"),
+        (("left/jog", '{"speed": 1}'), "this is not a JogCommand: object contains unknown field `speed`"),
         (("left/status", "{}"), "commands are taken on left/direct_joints, left/jog"),
         (("left/jok", "{}"), "no such topic"),
         (("left/jog", "{}", "--for", "1"), "--for requires --rate"),
