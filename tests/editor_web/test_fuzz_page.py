@@ -78,7 +78,7 @@ def test_scripts_in_names_texts_and_reasons_stay_text(browser: Browser, harmful:
         run = harmful.start(HARM_ID, supervision=RunOptions(start_paused=True))
         page.goto(f"{harmful.running.url}behaviors/{HARM_ID}")
         expect(page.locator("h1")).to_contain_text(SCRIPT)
-        expect(page.get_by_label("value")).to_have_value(SCRIPT)
+        expect(page.get_by_label("value", exact=True)).to_have_value(SCRIPT)
         control = harmful.on_loop(lambda: harmful.session.control(run))
         harmful.on_loop(lambda: control.lock("root/say", SCRIPT + QUOTED))
         harmful.on_loop(control.resume)

@@ -132,7 +132,7 @@ async def test_a_lost_connection_has_a_name_and_only_reading_comes_back(
             await ask(cabinet, case.do, **case.values)
         report = await motion.report()
         assert (report.end, report.at_rest) == (MotionEnd.FAILED, False)
-        assert case.cause[0] in report.reason
+        assert any(cause in report.reason for cause in case.cause)
         await until(lambda: bool(connection.lost_reason) or connection.process_id != first_process)
         await ask(cabinet, "restore")
         await until(lambda: not connection.lost_reason and connection.process_id not in (0, first_process))
