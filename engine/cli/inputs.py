@@ -17,6 +17,7 @@ from engine.document.parameter_spec import ParameterSpec
 from engine.document.python_name import is_python_name
 from engine.document.simulated_devices import with_simulated_devices
 from engine.document.substitutes import Substitutes
+from engine.document.text.yaml_source import load_text
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.runtime.plan import Catalogue, Plan, new_plan
 from engine.wording.suggestions import did_you_mean
@@ -81,6 +82,18 @@ def behavior_source(file: Path) -> str:
     """Return the argument that names a behavior as an absolute path, valid in every working directory."""
     path, python, name = str(file).partition(".py:")
     return f"{Path(path).resolve()}{python}{name}"
+
+
+def read_text(file: Path) -> str:
+    """Return the text of a document.
+
+    Raises:
+        DocumentError: the file cannot be read, or is no UTF-8 text.
+    """
+    try:
+        return load_text(file).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise DocumentError(f"this file is no text: {error}", where=str(file)) from error
 
 
 def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:

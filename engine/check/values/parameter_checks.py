@@ -65,12 +65,8 @@ def _check_node(subject: AnalyzedBehavior, placed: NodeAt, defaults: Mapping[str
 
 def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
     """Return the parameters of a behavior that have a default, as a run without values sees them."""
-    declared = subject.behavior.parameters.items()
-    return {
-        name: parameter.normal(parameter.default)
-        for name, parameter in declared
-        if not parameter.required and parameter.problem(parameter.default) is None
-    }
+    declared = subject.behavior.parameters
+    return _accepted(subject, {name: each.default for name, each in declared.items() if not each.required})
 
 
 def _accepted(subject: AnalyzedBehavior, given: Mapping[str, object]) -> dict[str, object]:

@@ -9,9 +9,8 @@ from typing import Annotated
 import typer
 
 from engine.cli.exit_code import ExitCode
-from engine.cli.inputs import read_pairs
+from engine.cli.inputs import read_pairs, read_text
 from engine.document.cell import load_cell
-from engine.document.text.yaml_source import load_text
 from engine.editing.adaptation.adaptation import AdaptedBehavior, adapt, proposed_file
 from engine.editing.adaptation.name_mapping import MappedName
 from engine.editing.project_context import ProjectContext
@@ -49,10 +48,7 @@ def adapt_behavior(
     """
     if output is not None and output.exists():
         raise DocumentError("there is a file of this name", where=str(output), hint="choose another one")
-    try:
-        text = load_text(behavior).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise DocumentError(f"this file is no text: {error}", where=str(behavior)) from error
+    text = read_text(behavior)
     target = load_cell(cell)
     context = ProjectContext(load_states(behavior), behavior.parent, Path(behavior.absolute().anchor))
     choices = read_pairs(map_ or (), "--map")

@@ -9,9 +9,8 @@ from typing import Annotated
 import typer
 
 from engine.authoring.yaml_export import to_yaml
-from engine.cli.inputs import read_behavior
+from engine.cli.inputs import read_behavior, read_text
 from engine.document.python_name import is_python_name
-from engine.document.text.yaml_source import load_text
 from engine.editing.analysis.diagnostics import draw_document
 from engine.editing.picture import PictureRequest, draw_svg, png_of
 from engine.editing.project_context import ProjectContext
@@ -44,7 +43,7 @@ def picture(
         text = to_yaml(read_behavior(behavior, states)[0])
         file = Path(str(behavior).partition(":")[0]).with_suffix(".yaml")
     else:
-        text, file = _text(behavior), behavior
+        text, file = read_text(behavior), behavior
     context = ProjectContext(states, file.parent, Path(file.absolute().anchor))
     draft = Draft(text, file=str(file))
     analysis, drawn = draw_document(draft, Outline(draft.data), file=file, context=context)
@@ -61,10 +60,3 @@ def picture(
         hint = "check its folder and the free space"
         raise FlexcellError(f"the file cannot be written: {error.strerror}", where=output, hint=hint) from error
     sys.stderr.write(f"wrote {output}\n")
-
-
-def _text(behavior: Path) -> str:
-    try:
-        return load_text(behavior).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise DocumentError(f"this file is no text: {error}", where=str(behavior)) from error
