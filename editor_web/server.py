@@ -18,6 +18,7 @@ from editor_web.security.login_sessions import LoginSessions
 from editor_web.transport.acceptor import Acceptor
 from editor_web.transport.capacity import COMMAND_RESERVE, connection_limit, raise_descriptor_limit
 from editor_web.transport.log_throttle import throttle_library_logs
+from editor_web.transport.request_limits import MAX_HEAD_BYTES
 from editor_web.transport.timed_connection import PageWebSocket, PendingConnections, TimedConnection
 from engine.errors import FlexcellError
 from engine.host.loopback import bound_socket, host_in_url
@@ -146,6 +147,7 @@ async def dashboard(
         log_config=None,
         access_log=False,
         server_header=False,
+        h11_max_incomplete_event_size=MAX_HEAD_BYTES,
         ws=PageWebSocket,
         ws_max_size=1_000_000,
         ws_per_message_deflate=False,

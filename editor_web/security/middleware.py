@@ -7,7 +7,6 @@ policy.
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -29,7 +28,7 @@ from editor_web.security.request_rules import (
     refuse_unproven_cookie,
 )
 from editor_web.transport.capacity import MAX_CONNECTIONS
-from editor_web.transport.request_limits import TOO_LARGE, declares_too_large, limit_body
+from editor_web.transport.request_limits import TOO_LARGE, declares_too_large, limit_body, refusal_body
 
 PAGE_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self' data:; "
@@ -317,7 +316,7 @@ def _with_headers(headers: Mapping[str, str], send: Send) -> Send:
 
 
 async def _answer(headers: Mapping[str, str], send: Send, refusal: RequestRefusal) -> None:
-    body = json.dumps({"message": refusal.message, "where": "", "hint": ""}).encode()
+    body = refusal_body(refusal.message)
     every = {
         "content-type": "application/json",
         "content-length": str(len(body)),

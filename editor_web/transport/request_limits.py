@@ -1,17 +1,26 @@
-"""Size and time limits for request bodies, independent of the route."""
+"""Size and time limits for requests, independent of the route, and the body of a refusal."""
 
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Mapping
 
 from fastapi import HTTPException
 from starlette.types import Message, Receive
 
+MAX_HEAD_BYTES = 65_536
+"""Of an address and its headers, as far as they have to be read before they can be understood."""
 MAX_BODY_BYTES = 8_000_000
 """Four times the largest document: JSON escapes some characters."""
 BODY_LIMIT_S = 30.0
 TOO_LARGE = f"a request may have at most {MAX_BODY_BYTES / 1e6:g} MB"
+HEAD_TOO_LARGE = f"an address with its headers may have at most {MAX_HEAD_BYTES} bytes"
+
+
+def refusal_body(message: str) -> bytes:
+    """Return the body of a request that is refused before a route sees it: the JSON of an `ErrorBody`."""
+    return json.dumps({"message": message, "where": "", "hint": ""}).encode()
 
 
 def declares_too_large(headers: Mapping[str, str]) -> bool:

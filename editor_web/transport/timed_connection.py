@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from collections import OrderedDict
+from http import HTTPStatus
 from typing import Any
 
 import h11
@@ -22,6 +24,8 @@ BODY_GRACE_S = 1.0
 _CLOSE_GRACE_S = 1.0
 _BAD_HANDSHAKE = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 _INVALID_TEXT = 1007
+_HEAD_TOO_LARGE = 431
+_NO_HTTP = "this is no valid HTTP request"
 
 
 class PendingConnections:
@@ -85,6 +89,22 @@ class TimedConnection(H11Protocol):
         """Wait for the next request, or for the rest of one that was answered before it was read completely."""
         super().on_response_complete()
         self._follow()
+
+    def send_400_response(self, msg: str) -> None:
+        """Refuse what is no request in JSON, as all refusals are; an address or a header that is too long with 431."""
+        error = sys.exception()
+        is_too_large = isinstance(error, h11.RemoteProtocolError) and error.error_status_hint == _HEAD_TOO_LARGE
+        status, message = (_HEAD_TOO_LARGE, bodies.HEAD_TOO_LARGE) if is_too_large else (400, _NO_HTTP)
+        body = bodies.refusal_body(message)
+        headers = [("content-type", "application/json"), ("content-length", str(len(body))), ("connection", "close")]
+        answer = (
+            h11.Response(status_code=status, headers=headers, reason=HTTPStatus(status).phrase),
+            h11.Data(data=body),
+            h11.EndOfMessage(),
+        )
+        for event in answer:
+            self.transport.write(self.conn.send(event) or b"")
+        self.transport.close()
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """Hand the transport over to a websocket."""

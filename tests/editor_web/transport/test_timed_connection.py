@@ -7,9 +7,11 @@ import socket
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
+import msgspec
 import pytest
 
 from editor_web import server
+from editor_web.http_bodies.common_bodies import ErrorBody
 from editor_web.transport import request_limits as bodies
 from editor_web.transport import timed_connection as connection
 from tests.editor_web.conftest import Serve
@@ -153,3 +155,26 @@ async def test_a_handshake_that_is_none_is_refused(
         assert 400 <= status < 500
     said = [record.getMessage() for record in caplog.records if record.exc_info or record.levelname == "ERROR"]
     assert said == []
+
+
+@pytest.mark.parametrize(
+    ("text", "status", "words"),
+    [
+        ("GET /api/v1/runs?watches=" + "x" * 240_000, 431, "an address with its headers may have at most 65536 bytes"),
+        ("GET /api/v1/runs HTTP/1.1\r\nno header\r\n\r\n", 400, "this is no valid HTTP request"),
+    ],
+    ids=["long address", "no header"],
+)
+async def test_what_cannot_be_read_is_refused_in_json_as_all_refusals_are(
+    serve: Serve, text: str, status: int, words: str
+) -> None:
+    """With the status that the description of the interface names; the server goes on."""
+    async with serve() as served:
+        async with RawPeer.connected(served) as peer:
+            await peer.send(text)
+            first, _, rest = (await peer.all()).partition(b"\r\n")
+            heads, _, body = rest.partition(b"\r\n\r\n")
+        assert int(first.split(b" ")[1]) == status
+        assert b"application/json" in heads.lower()
+        assert words in msgspec.json.decode(body, type=ErrorBody).message
+        assert (await served.http.get("/api/v1/session")).status_code == 200
