@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping
 from functools import cache
@@ -72,6 +73,32 @@ def test_imports_between_rooms_run_one_way_over_few_floors(package: str, floors:
     """The longest chain of rooms that need one another."""
     chain = longest_chain(rooms(package))
     assert len(chain) <= floors, " → ".join(chain)
+
+
+def told_floors(package: str) -> Mapping[str, int]:
+    """Return the floor of each room, as the table of the package in `architecture.md` tells it."""
+    page = (ROOT / "docs/concepts/architecture.md").read_text(encoding="utf-8")
+    table = page.partition(f"### `{package}/`\n")[2].partition("\n#")[0]
+    return {
+        f"{package}.{name.removesuffix('/').removesuffix('.py')}": int(floor)
+        for floor, names in re.findall(r"^\| (\d+) \| ([^|]+) \|", table, re.MULTILINE)
+        for name in re.findall(r"`([^`]+)`", names)
+    }
+
+
+@pytest.mark.parametrize("package", ["engine", "robots", "editor_web"])
+def test_each_room_stands_on_the_floor_that_the_page_of_the_architecture_tells(package: str) -> None:
+    """The table has all rooms; a room uses rooms on lower floors only."""
+    told = told_floors(package)
+    graph = {room: used - {package} for room, used in rooms(package).items() if room != package}
+    assert sorted(graph.keys() - told.keys()) == []
+    odd = [
+        f"{room} on floor {told[room]} uses {other} on floor {told[other]}"
+        for room, used in sorted(graph.items())
+        for other in sorted(used)
+        if told[other] >= told[room]
+    ]
+    assert odd == []
 
 
 @pytest.mark.parametrize(("folder", "most"), [("engine", 15), ("engine/sweep", 10), ("editor_web", 12), ("robots", 12)])
