@@ -8,9 +8,9 @@ COMMIT` and `python -m benchmarks.house ../before .` compare two commits. Nothin
 
 from __future__ import annotations
 
+import argparse
 import ast
 import re
-import sys
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -253,9 +253,14 @@ FIGURES: Mapping[str, Callable[[Path], int]] = {
 }
 
 
-def main(folders: list[str]) -> None:
+def main() -> None:
     """Print the figures of each folder as a table."""
-    roots = [Path(folder).resolve() for folder in folders] or [HERE]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="*", type=Path, help="checkouts to compare (default: this one)")
+    roots = [folder.resolve() for folder in parser.parse_args().folders] or [HERE]
+    for root in roots:
+        if not (root / "engine").is_dir():
+            parser.error(f"{root} is no checkout of flexcell: it has no folder engine/")
     print("| figure |", " | ".join(root.name for root in roots), "|")
     print("|---|" + "---|" * len(roots))
     for what, figure in FIGURES.items():
@@ -263,4 +268,4 @@ def main(folders: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
