@@ -92,6 +92,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         clock=clock,
         gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
         outputs=_outputs(cell, world, placement),
+        frames=cell.document.fixed_frames,
         workspace=workspace,
     )
 

@@ -15,7 +15,7 @@ from engine.document.cell import Cell, CellDocument
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
 
-ItemKind = Literal["robot", "tool", "fixture", "part", "camera", "person", "occupancy", "world", "store"]
+ItemKind = Literal["robot", "tool", "fixture", "part", "frame", "camera", "person", "occupancy", "world", "store"]
 
 
 class CellItem(msgspec.Struct, frozen=True, kw_only=True):
@@ -99,6 +99,8 @@ def _items(document: CellDocument) -> Iterator[CellItem]:
         yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape)
     for name, part in document.parts.items():
         yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape)
+    for name, frame in document.frames.items():
+        yield CellItem(path=f"frames/{name}", kind="frame", name=name, model=f"in {frame.parent}")
     for name, camera in document.cameras.items():
         yield CellItem(path=f"cameras/{name}", kind="camera", name=name, model=camera.driver)
     for name in document.people:
@@ -126,6 +128,8 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each == "cell/parts")
         case "occupancy":
             return tuple(each for each in known if each.startswith("cell/occupancy"))
+        case "frame":
+            return tuple(each for each in known if each == "cell/frames")
         case "world":
             return tuple(each for each in known if each in ("cell/frames", "cell/planning_scene"))
         case "fixture" | "person" | "store":

@@ -29,7 +29,8 @@ _KINDS = frozenset((
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`) and `output` (`left/3`, `left/gripper`) belong to a robot,
 `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
-of the cell's view. `body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add.
+of the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
+planning scene, to which behaviors add.
 `topic` is one that the cell document declares. `bus_topic` is any topic, `skill` any service or action: only an open
 cell knows those."""
 
@@ -148,6 +149,7 @@ def cell_names(cell: Cell) -> CellNames:
     summaries = {name: _summary(models, cell, name) for name in robots}
     links = frozenset(_links(summaries))
     parts, fixtures, people = (frozenset(each) for each in (document.parts, document.fixtures, document.people))
+    frames = frozenset(document.frames)
     detectors = {name: camera.detect for name, camera in document.cameras.items() if camera.detect is not None}
     bases = {f"{name}/{summary.base_link}" for name, summary in summaries.items() if summary is not None}
     tools = {name: _tools(robots[name], summaries[name], kinds) for name in robots}
@@ -163,8 +165,8 @@ def cell_names(cell: Cell) -> CellNames:
         "label": frozenset(
             f"{name}/{detector.labels.get(part, part)}" for name, detector in detectors.items() for part in parts
         ),
-        "frame": links | parts | {_WORLD},
-        "arm_frame": frozenset((_WORLD, *bases)),
+        "frame": links | parts | frames | {_WORLD},
+        "arm_frame": frames | {_WORLD, *bases},
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,

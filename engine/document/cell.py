@@ -15,6 +15,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from engine.document.cell_frames import FrameSpec, fixed_frames, require_frames
 from engine.document.cell_perception import (
     DepthCamera,
     OccupancyMap,
@@ -29,6 +30,7 @@ from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
+from engine.messages import Pose
 
 
 class SqliteStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
@@ -156,6 +158,10 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     speed_and_separation_monitoring: SpeedAndSeparationMonitoring | None = None
     people: dict[Name, Person] = {}
     unknown_bodies: dict[Name, UnknownBody] = {}
+    frames: Annotated[
+        dict[Name, FrameSpec],
+        Meta(description="Frames in which behaviors give poses, and which they find on `cell/frames`"),
+    ] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -170,7 +176,13 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
             "fixture": self.fixtures,
             "person": self.people,
             "camera": self.cameras,
+            "frame": self.frames,
         }
+
+    @property
+    def fixed_frames(self) -> dict[str, Pose]:
+        """The poses of the named frames in the world."""
+        return fixed_frames(self.frames, {name: fixture.at.pose() for name, fixture in self.fixtures.items()})
 
     @property
     def real_devices(self) -> dict[str, str]:
@@ -226,11 +238,13 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_unknown_bodies(document, source)
     _require_regions(document, source)
     _require_topics(document, source)
+    taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
+    require_frames(document.frames, source, fixtures=document.fixtures, taken=taken)
     return Cell(document=document, file=file, source=source)
 
 
 _LATER = "remove it"
-_REFUSED = {"modules": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
+_REFUSED = {"modules": _LATER, "bus": _LATER, "calibration": _LATER}
 
 
 # A password between `:` and `@` that is not an environment variable.

@@ -22,13 +22,13 @@ RotationRpy = Annotated[Vector3, Meta(description="Angles in radians, about x, y
 
 
 class Placement(StrictModel, frozen=True, kw_only=True):
-    """A pose in the world frame: position, and rotation about the fixed x, y, z axes in this order."""
+    """A pose in the world, for a frame in its parent: position, and rotation about the fixed axes x, y, z in turn."""
 
     xyz: PositionXyz = (0.0, 0.0, 0.0)
     rpy: RotationRpy = (0.0, 0.0, 0.0)
 
     def pose(self) -> Pose:
-        """Return the placement as a pose in the frame `world`."""
+        """Return the placement as a pose in the frame `world`, or in the parent of a frame."""
         return Pose(xyz=self.xyz, xyzw=_quaternion(self.rpy))
 
 

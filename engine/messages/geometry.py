@@ -35,7 +35,7 @@ class Wrench(Message, frozen=True, kw_only=True):
 
 
 class FramePoses(Message, frozen=True, kw_only=True):
-    """World poses of all moving frames at one instant: row i is names[i], xyz and xyzw."""
+    """World poses of all moving frames and of the named ones at one instant: row i is names[i], xyz and xyzw."""
 
     time_s: float
     names: tuple[str, ...]

@@ -15,7 +15,7 @@ class ArmTarget(msgspec.Struct, frozen=True, kw_only=True):
 
     `parameter` is the state's parameter that defines the target, and `index` its place there if that is a list;
     `match` selects the components of the pose to reach.
-    The pose may be in the frame `world` or in that of the arm's base.
+    The pose may be in the frame `world`, in that of the arm's base, or in a named frame of the cell.
     """
 
     robot: str

@@ -58,6 +58,7 @@ class ArmServer:
         gripper: The tool on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
         tolerance: Following tolerance of the port.
+        frames: Poses in the world of the named frames of the cell, in which goals may be given.
         workspace: The workspace shared with other arms; without one the arm has no collision-free motions and
             checks no path.
     """
@@ -73,6 +74,7 @@ class ArmServer:
         gripper: ToolServer | None = None,
         outputs: OutputServices | None = None,
         tolerance: Tolerance | None = None,
+        frames: Mapping[str, Pose] | None = None,
         workspace: Workspace | None = None,
     ) -> None:
         self._runner = runner = MotionRunner(
@@ -83,6 +85,7 @@ class ArmServer:
             clock=clock,
             tolerance=tolerance or Tolerance(),
             path_guard=PathGuard(name, workspace) if workspace is not None else None,
+            frames=frames,
         )
         self._gripper = gripper
         self.outputs = outputs

@@ -42,6 +42,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
         people=tuple(_person(name, person) for name, person in document.people.items()),
+        frames=document.fixed_frames,
         unknown_fixtures=tuple(
             _unknown_fixture(name, body) for name, body in document.unknown_bodies.items() if body.mass_kg is None
         ),

@@ -119,6 +119,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
 
     In real time, `engine_silence_s` and `world_silence_s` are the maximum silences of engine and world before the
     other side reacts, see `robots.port.control_process`; `start_limit_s` limits how long its process builds the world.
+    The named `frames` are published with those of bodies and are nothing in the physics.
     The unknown bodies are in the physics and in images of cameras, but in no planning scene and among no parts.
     With `separation` the speed of all arms follows their measured distance from people.
     The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
@@ -135,6 +136,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     fixtures: tuple[FixtureBody, ...] = ()
     parts: tuple[PartBody, ...] = ()
     people: tuple[PersonBody, ...] = ()
+    frames: dict[str, Pose] = {}
     unknown_fixtures: tuple[FixtureBody, ...] = ()
     unknown_parts: tuple[PartBody, ...] = ()
     separation: SeparationRule | None = None

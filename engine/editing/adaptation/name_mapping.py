@@ -22,7 +22,7 @@ Choices = Mapping[str, str]
 _ALIKE = 0.6
 """How similar two names must be for one to be proposed for the other, 0 to 1."""
 _BELOW: Mapping[str, CellNameKind] = {"link": "link", "output": "output", "label": "label", "tool": "tool"}
-_ORDER = ("robot", "part", "fixture", "person", "camera", "tool", "link", "output", "label", "planner")
+_ORDER = ("robot", "part", "fixture", "frame", "person", "camera", "tool", "link", "output", "label", "planner")
 
 
 class NameCandidate(msgspec.Struct, frozen=True, kw_only=True):
@@ -237,7 +237,7 @@ class _Mapping:
             return best, "same name"
         if kind not in _ORDER:
             return self._entry_proposed(kind, name, names)
-        if best in taken and kind in ("robot", "part", "fixture", "camera", "person"):
+        if best in taken and kind in ("robot", "part", "fixture", "frame", "camera", "person"):
             return "", f"no {kind} is left for it"
         if kind == "robot":
             return best, "same tool and joints" if self._robots_alike(name, best) >= 9.0 else "the most like it"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -72,6 +72,7 @@ class MotionRunner:
         clock: Clock,
         tolerance: Tolerance,
         path_guard: PathGuard | None = None,
+        frames: Mapping[str, Pose] | None = None,
     ) -> None:
         self.name = name
         self.model = model
@@ -83,7 +84,7 @@ class MotionRunner:
         self._tool: tuple[Vector3, Quaternion] = NO_FRAME
         self._planner = self._new_planner()
         self.loading = WarmUp(name, self._planner.prepare)
-        self.frames = ToolFrames(arm=name, base_link=model.base_link, base=base)
+        self.frames = ToolFrames(arm=name, base_link=model.base_link, base=base, named=frames)
         self.status = DeviceStatus.DISCONNECTED
         self.reserved_for = ""
         self.activity = ""

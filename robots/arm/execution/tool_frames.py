@@ -1,11 +1,14 @@
-"""The reference frames for poses of one arm: the world and the arm's base."""
+"""The reference frames for poses of one arm: the world, the arm's base, and the named frames of the cell."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 
 from engine.errors import RobotError
 from engine.messages import Pose
+from engine.wording import did_you_mean
 from robots.model.transform import RigidTransform
 from robots.port import Array
 
@@ -21,12 +24,19 @@ class ToolFrames:
         arm: Name of the arm on the bus.
         base_link: Base link of its model; the base frame is named `<arm>/<base_link>`.
         base: Pose of the base in the world.
+        named: Poses of the frames of the cell in the world.
     """
 
-    def __init__(self, *, arm: str, base_link: str, base: RigidTransform) -> None:
+    def __init__(
+        self, *, arm: str, base_link: str, base: RigidTransform, named: Mapping[str, Pose] | None = None
+    ) -> None:
         self._arm = arm
         self.base_frame = f"{arm}/{base_link}"
         self.base = base
+        self._outer = {
+            self.base_frame: base,
+            **{name: RigidTransform.from_pose(pose) for name, pose in (named or {}).items()},
+        }
 
     def axes(self, frame: str, *, tool: RigidTransform) -> Array:
         """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is the tool's pose."""
@@ -51,10 +61,11 @@ class ToolFrames:
             )
         if pose.frame == WORLD:
             return given
-        if pose.frame == self.base_frame:
-            return self.base.then(given)
+        outer = self._outer.get(pose.frame)
+        if outer is not None:
+            return outer.then(given)
         raise RobotError(
             f"the frame {pose.frame!r} is not known to this arm",
             where=self._arm,
-            hint=f"give the pose in {WORLD!r} or {self.base_frame!r}",
+            hint=did_you_mean(pose.frame, (WORLD, *self._outer)),
         )

@@ -147,6 +147,7 @@ class DrivenArm:
                 clock=self._clock,
                 outputs=setup.output_services(outputs) if outputs is not None else None,
                 tolerance=self._tolerance,
+                frames=setup.context.cell.document.fixed_frames,
                 workspace=setup.workspace(),
             )
             await self._server.__aenter__()

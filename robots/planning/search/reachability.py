@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 import msgspec
@@ -50,7 +51,7 @@ class ReachabilityChecker:
             return None
         arm = self._arms.get(target.robot)
         if arm is None:
-            arm = self._arms[target.robot] = _Arm(self._scene, target.robot)
+            arm = self._arms[target.robot] = _Arm(self._scene, target.robot, frames=self._cell.document.fixed_frames)
         if target.pose is None:
             # Unknown joints, or joints outside the limits, are another finding.
             joints = np.array([target.joints])
@@ -87,20 +88,24 @@ class ReachabilityChecker:
 class _Arm:
     """One arm with the fixtures, without the other arms, whose joints are unknown."""
 
-    def __init__(self, scene: PlanningScene, name: str) -> None:
+    def __init__(self, scene: PlanningScene, name: str, *, frames: Mapping[str, Pose]) -> None:
         self._name = name
         arm = scene.arm(name)
         self._checker = ExactChecker(msgspec.structs.replace(scene, arms=(arm,)), name)
         base = RigidTransform.from_pose(arm.placement.base)
-        self._base, self._base_frame = base, f"{name}/{self._checker.model.base_link}"
+        self._outer = {
+            f"{name}/{self._checker.model.base_link}": base,
+            **{frame: RigidTransform.from_pose(pose) for frame, pose in frames.items()},
+        }
         self.home = np.array(self._checker.model.home_rad)
         self.inverse = InverseKinematicsSolver(ArmKinematics(self._checker.model, base=base))
 
     def in_world(self, pose: Pose) -> RigidTransform | None:
-        """Return a pose in the world; None if its frame is neither the world nor the base."""
+        """Return a pose in the world; None if its frame is neither the world nor the base, nor a frame of the cell."""
         if pose.frame == _WORLD:
             return RigidTransform.from_pose(pose)
-        return self._base.then(RigidTransform.from_pose(pose)) if pose.frame == self._base_frame else None
+        outer = self._outer.get(pose.frame)
+        return outer.then(RigidTransform.from_pose(pose)) if outer is not None else None
 
     def has(self, rows: Array) -> bool:
         """Return whether configurations (k, n) fit this arm and its limits."""

@@ -38,6 +38,7 @@ class WorldPublisher:
         joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
         summary = host.summary
         self._frames = summary.frames
+        self._named = scene.frames
         self._parts = frozenset(summary.parts)
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
         real = {placement.name for placement in scene.arms if placement.driven}
@@ -86,7 +87,12 @@ class WorldPublisher:
 
     def _frame_poses(self, snapshot: SimSnapshot) -> FramePoses:
         xyz, xyzw = snapshot.frames()
-        return FramePoses(time_s=snapshot.time_s, names=self._frames, xyz=xyz, xyzw=xyzw)
+        return FramePoses(
+            time_s=snapshot.time_s,
+            names=(*self._frames, *self._named),
+            xyz=(*xyz, *(pose.xyz for pose in self._named.values())),
+            xyzw=(*xyzw, *(pose.xyzw for pose in self._named.values())),
+        )
 
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
         xyz, xyzw = snapshot.frames()

@@ -18,6 +18,7 @@ robots:
   left: {model: panda, gripper: {model: panda_hand}}
   right: {model: ur10, outputs: {gripper: 2}}
 parts: {plate: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1}}
+frames: {slot: {at: {xyz: [0.3, 0, 0]}}}
 """
 
 
@@ -43,6 +44,13 @@ def test_what_is_said_of_a_name(names: CellNames, kind: CellNameKind, name: str,
     assert not names.has(kind, name)
     assert names.missing(kind, name) == message
     assert names.advice(kind, name).startswith(advice)
+
+
+def test_a_named_frame_is_one_for_the_poses_of_arms_and_one_of_the_view(names: CellNames) -> None:
+    """And what is like it is told."""
+    assert names.has("arm_frame", "slot")
+    assert names.has("frame", "slot")
+    assert names.advice("arm_frame", "slto") == "did you mean slot?"
 
 
 def test_without_models_tools_and_links_may_be_any(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

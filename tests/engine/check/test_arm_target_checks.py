@@ -26,6 +26,8 @@ fixtures:
   table: {shape: box, size_m: [2.4, 1.2, 0.04], at: {xyz: [0, 0, -0.02]}}
   post: {shape: box, size_m: [0.1, 0.1, 0.5], at: {xyz: [0.4, -0.3, 0.25]}}
   foam: {shape: box, size_m: [0.1, 0.1, 0.3], at: {xyz: [0.4, 0.3, 0.15]}, spring: {stiffness_n_m: 500}}
+frames:
+  post_top: {parent: post, at: {xyz: [0, 0, 0.25]}}
 parts:
   peg: {shape: box, size_m: [0.03, 0.03, 0.2], mass_kg: 0.1, at: {xyz: [0.5, 0.0, 0.1]}}
 """
@@ -80,6 +82,10 @@ def found(folder: Path, *nodes: str, level: TargetLevel = "warning", head: str =
             "unreachable-target",
         ),
         (f"motion.MoveFree robot: left, pose: {{xyz: [0.5, 0, 0.9], {DOWN}}}, back_m: 0.9", "unreachable-target"),
+        # In a named frame of the cell, which stands on the post.
+        (f"motion.MovePose robot: left, target: {{xyz: [0, 0, 0.1], {DOWN}, frame: post_top}}", ""),
+        (f"motion.MovePose robot: left, target: {{xyz: [1, 0, 0.1], {DOWN}, frame: post_top}}", "unreachable-target"),
+        (f"motion.MovePose robot: left, target: {{xyz: [0, 0, -0.1], {DOWN}, frame: post_top}}", "target-in-collision"),
         # In the frame of the base; in other frames nobody knows.
         (f"motion.MovePose robot: right, target: {{xyz: [0.5, 0, 0.3], {DOWN}, frame: right/panda_link0}}", ""),
         (

@@ -82,7 +82,7 @@ async def test_a_canceled_motion_tells_how_many_waypoints_are_behind_it() -> Non
         (Waypoint(joints=HOME, pose=pose_at(0.0)), "waypoints[1]: give either `joints` or `pose`", None),
         (Waypoint(joints=HOME[:2]), "waypoints[1]: the goal has 2 joints", "this arm has 7"),
         (Waypoint(joints=(9.0, *HOME[1:])), "waypoints[1]: panda_joint1 cannot go to 9.0000 rad", "its range is"),
-        (Waypoint(pose=pose_at(0.0, "moon")), "waypoints[1]: the frame 'moon' is not known to this arm", "'world'"),
+        (Waypoint(pose=pose_at(0.0, "moon")), "waypoints[1]: the frame 'moon' is not known to this arm", "world"),
         (Waypoint(pose=pose_at(3.0)), "waypoints[1]: ", "reach"),
     ],
 )

@@ -35,6 +35,7 @@ const ITEMS = [
   item('parts/disk', 'part'),
   item('cameras/eye', 'camera', { model: 'sim' }),
   item('world', 'world', { model: 'mujoco' }),
+  item('frames/dock', 'frame', { model: 'in table_top' }),
 ]
 const TREE = cellTree(ITEMS, ['plate', 'disk', 'left/tool', 'left/link0', 'table_top'])
 
@@ -66,8 +67,16 @@ it('puts tools below robots and frames below what they belong to, and no empty g
     '  left',
     '    link0',
     '    tool',
+    '  dock in table_top',
     '  table_top',
   ])
+})
+
+it('shows a frame that the document names once, with its lines, whether or not its pose is known', () => {
+  for (const tree of [TREE, cellTree(ITEMS, ['dock'])]) {
+    expect(nodeAt(tree, 'frames/dock')?.item?.path).toBe('frames/dock')
+    expect(tree.at(-1)?.children.filter((node) => node.name === 'dock')).toHaveLength(1)
+  }
 })
 
 it('finds a line, and what is above it', () => {

@@ -7,7 +7,7 @@ import type { Status } from './runState'
 import { degrees, rollPitchYaw } from './teaching'
 import { firstOfPath, nameOfPath, restOfPath } from './path'
 
-export type NodeKind = CellItem['kind'] | 'frame' | 'group'
+export type NodeKind = CellItem['kind'] | 'group'
 
 /** One line of the tree; `address` is unique in it, and that of the item where it is one. */
 export interface CellNode {
@@ -26,8 +26,8 @@ export interface CellNow {
   readonly state: CellStateFrame | undefined
 }
 
-/** The group of each kind of item; a tool stands below the robot that carries it. */
-const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool'>, string>> = {
+/** The group of each kind of item; a tool stands below the robot that carries it, a frame among all frames. */
+const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool' | 'frame'>, string>> = {
   robot: 'Robots',
   fixture: 'Fixtures',
   part: 'Parts',
@@ -43,7 +43,7 @@ const FRAMES = 'frames'
 /** The tree; what is empty has no group. `frames` are all frames of the cell by name, parts among them. */
 export function cellTree(items: readonly CellItem[], frames: readonly string[]): readonly CellNode[] {
   const groups = GROUPS.map((name) => {
-    const own = items.filter((item) => !item.owner && item.kind !== 'tool' && GROUP_OF[item.kind] === name)
+    const own = items.filter((item) => !item.owner && item.kind !== 'tool' && item.kind !== 'frame' && GROUP_OF[item.kind] === name)
     return group(
       `group:${name}`,
       name,
@@ -60,18 +60,20 @@ function nodeOf(item: CellItem, items: readonly CellItem[]): CellNode {
   return { address: item.path, kind: item.kind, name, detail: item.model === name ? '' : item.model, item, children }
 }
 
-/** Frames below their robot: `left/flange` below `left`; a part is a frame too, but it is among the parts already. */
+/** Frames below their robot: `left/flange` below `left`; a part is a frame too, but it is among the parts already; frames that the document names have its lines. */
 function framesOf(items: readonly CellItem[], frames: readonly string[]): CellNode {
   const parts = new Set(items.filter((item) => item.kind === 'part').map((item) => item.name))
+  const named = new Map(items.filter((item) => item.kind === 'frame').map((item) => [item.name, item]))
   const byOwner = new Map<string, CellNode[]>()
-  for (const frame of frames.filter((each) => !parts.has(each)).toSorted()) {
+  for (const frame of [...new Set([...frames, ...named.keys()])].filter((each) => !parts.has(each)).toSorted()) {
     const [owner, rest] = [firstOfPath(frame), restOfPath(frame)]
+    const item = named.get(frame)
     const node = {
       address: `${FRAMES}/${frame}`,
       kind: 'frame',
       name: rest || owner,
-      detail: '',
-      item: undefined,
+      detail: item?.model ?? '',
+      item,
       children: [],
     } as const
     const own = rest ? owner : ''

@@ -208,3 +208,14 @@ def test_a_choice_that_the_cell_cannot_keep_is_refused(folder: Path, choices: di
 def test_a_behavior_of_no_cell_needs_no_adapting(folder: Path) -> None:
     with pytest.raises(DocumentError, match="names no cell"):
         adapted(folder, text=WORK.replace("cell: cells/old.yaml\n", ""))
+
+
+def test_a_named_frame_becomes_one_of_the_other_cell(folder: Path) -> None:
+    """The same name first; a frame is neither a part nor a fixture."""
+    for name, cell, frames in (("old", OLD_CELL, "slot: {}"), ("new", NEW_CELL, "dock: {}, slots: {}")):
+        (folder / f"cells/{name}.yaml").write_text(f"{cell}frames: {{{frames}}}\n", encoding="utf-8")
+    text = WORK.replace("frame: world", "frame: slot")
+    made = adapted(folder, text=text)
+    assert targets(made)["frame:slot"] == "slots"
+    assert "frame: slots" in made.documents[0].text
+    assert "frame: dock" in adapted(folder, {"slot": "dock"}, text=text).documents[0].text
