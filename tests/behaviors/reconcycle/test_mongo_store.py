@@ -1,4 +1,4 @@
-"""The two-arm transfer with its entries on a MongoDB server: overwriting one changes the motion, not the behavior."""
+"""Behaviors of the demo cell with its entries on a MongoDB server: overwriting one changes the motion alone."""
 
 from __future__ import annotations
 
@@ -17,6 +17,24 @@ from tests.behaviors.reconcycle.test_two_arm_transfer import Transfer, cell_as_i
 from tests.engine.store.mongod import RUNS_HERE, Mongod
 
 SEED = 7
+HOMEWARD = """\
+flexcell: 1
+name: homeward
+outcomes: [finished, failed]
+success: [finished]
+root:
+  machine:
+    initial: aside
+    states:
+      aside:
+        state: motion.MoveJoints
+        with: {robot: left, target: [0.5, -0.785, 0, -2.356, 0, 1.571, 0.785]}
+        transitions: {reached: home, failed: failed}
+      home:
+        state: motion.MoveJoints
+        with: {robot: left, target: {entry: left_home}}
+        transitions: {reached: finished, failed: failed}
+"""
 
 
 @pytest.fixture(scope="module")
@@ -36,9 +54,9 @@ def on_server(server: Mongod, database: str, folder: Path) -> Cell:
     return changed_cell(folder, lambda text: re.sub("(?m)^store: .*", store, text))
 
 
-def ran(cell: Cell, store: Path | None = None) -> Transfer:
-    """The transfer, run to its good end."""
-    transfer = Transfer(cell, SEED)
+def ran(cell: Cell, store: Path | None = None, *, homeward: Path | None = None) -> Transfer:
+    """The transfer, or a short motion home, run to its good end."""
+    transfer = Transfer(cell, SEED, behavior=homeward) if homeward is not None else Transfer(cell, SEED)
     assert transfer.run(store).outcome == "finished"
     return transfer
 
@@ -57,11 +75,13 @@ def test_overwriting_an_entry_changes_the_motion_of_the_next_run_and_not_the_beh
     """Another resting place for the left arm; undone, the arm moves as before."""
     cell = on_server(server, "taught", tmp_path)
     address = f"{server.uri}/taught"
-    first = ran(cell)
+    behavior = tmp_path / "homeward.yaml"
+    behavior.write_text(HOMEWARD, encoding="utf-8")
+    first = ran(cell, homeward=behavior)
     home = run_virtual(_turned(address, by_rad=0.3))
-    second = ran(cell)
+    second = ran(cell, homeward=behavior)
     run_virtual(_undone(address))
-    third = ran(cell)
+    third = ran(cell, homeward=behavior)
     assert second.joints[-1][0] == pytest.approx(home, abs=0.01)
     assert abs(second.joints[-1][0][0] - first.joints[-1][0][0]) == pytest.approx(0.3, abs=0.01)
     assert _path_taken(first) == _path_taken(second) == _path_taken(third)

@@ -40,7 +40,7 @@ LEAST_CLEARANCE_M = 0.15
 
 @dataclass
 class Transfer:
-    """One run in lockstep, and where the arms were every `SAMPLE_S`."""
+    """One run in lockstep, of the transfer or of another behavior, and where the arms were every `SAMPLE_S`."""
 
     cell: Cell
     seed: int | None
@@ -48,6 +48,7 @@ class Transfer:
     log: list[Event] = field(default_factory=list[Event])
     joints: list[tuple[tuple[float, ...], ...]] = field(default_factory=list[tuple[tuple[float, ...], ...]])
     result: RunResult | None = None
+    behavior: Path = BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml"
 
     def run(self, store: Path | None = None) -> RunResult:
         """Run it to its end, with that store in place of the cell's."""
@@ -55,7 +56,7 @@ class Transfer:
         return self.result
 
     async def _run(self, store: Path | None) -> RunResult:
-        behavior = load_behavior(BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml")
+        behavior = load_behavior(self.behavior)
         async with OpenCell(self.cell, seed=self.seed, store_path=str(store) if store is not None else None) as cell:
             run = Run(
                 new_plan(behavior, load_states()),
