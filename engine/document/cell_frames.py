@@ -76,14 +76,14 @@ def require_frames(
                 hint=did_you_mean(spec.parent, known),
             )
     for name in frames:
-        trail = [name]
-        while (parent := frames[trail[-1]].parent) in frames:
-            trail.append(parent)
+        chain = [name]
+        while (parent := frames[chain[-1]].parent) in frames:
+            chain.append(parent)
             if parent == name:
                 raise DocumentError(
-                    f"the frames {' → '.join(trail)} are parents of one another",
+                    f"the frames {' → '.join(chain)} are parents of one another",
                     where=source.position(("frames", name, "parent")),
                     hint="fix one of them to `world` or to a fixture",
                 )
-            if parent in trail[:-1]:
+            if parent in chain[:-1]:
                 break

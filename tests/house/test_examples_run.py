@@ -97,6 +97,7 @@ def test_a_part_of_a_cell_makes_a_world(tmp_path: Path, text: str) -> None:
     scene = build_scene(cell.document, seed=None, resolve=cell.resolve)
     assert {arm.name for arm in scene.arms} == set(cell.document.robots)
     assert {part.name for part in scene.parts} == set(cell.document.parts)
+    assert scene.frames.keys() == cell.document.frames.keys()
     assert {person.name for person in scene.people} == set(cell.document.people)
     assert {body.name for body in (*scene.unknown_fixtures, *scene.unknown_parts)} == set(cell.document.unknown_bodies)
 

@@ -75,7 +75,7 @@ def test_imports_between_rooms_run_one_way_over_few_floors(package: str, floors:
     assert len(chain) <= floors, " → ".join(chain)
 
 
-def told_floors(package: str) -> Mapping[str, int]:
+def page_floors(package: str) -> Mapping[str, int]:
     """Return the floor of each room, as the table of the package in `architecture.md` tells it."""
     page = (ROOT / "docs/concepts/architecture.md").read_text(encoding="utf-8")
     table = page.partition(f"### `{package}/`\n")[2].partition("\n#")[0]
@@ -89,14 +89,14 @@ def told_floors(package: str) -> Mapping[str, int]:
 @pytest.mark.parametrize("package", ["engine", "robots", "editor_web"])
 def test_each_room_stands_on_the_floor_that_the_page_of_the_architecture_tells(package: str) -> None:
     """The table has all rooms; a room uses rooms on lower floors only."""
-    told = told_floors(package)
+    shown = page_floors(package)
     graph = {room: used - {package} for room, used in rooms(package).items() if room != package}
-    assert sorted(graph.keys() - told.keys()) == []
+    assert sorted(graph.keys() - shown.keys()) == []
     odd = [
-        f"{room} on floor {told[room]} uses {other} on floor {told[other]}"
+        f"{room} on floor {shown[room]} uses {other} on floor {shown[other]}"
         for room, used in sorted(graph.items())
         for other in sorted(used)
-        if told[other] >= told[room]
+        if shown[other] >= shown[room]
     ]
     assert odd == []
 
