@@ -146,6 +146,7 @@ def opening(trial: Trial, page: Page) -> None:
 
 def follow(trial: Trial, page: Page, words: str, bar: float, selector: str, at: list[float] | None) -> None:
     """Move what is at a place with the mouse: frames a second, and what a frame costs the page's main thread."""
+    page.locator(selector).first.wait_for(timeout=_LIMIT_MS)
     devtools = Devtools(page)
     before = devtools.busy_s()
     done: dict[str, float] = page.evaluate("(a) => probe.drag(a[0], a[1], a[2])", [selector, at, _DRAG_S])
@@ -270,7 +271,7 @@ def live(trial: Trial, page: Page) -> None:
     pane = page.locator("[data-graph]").bounding_box()
     assert pane is not None
     corner = [pane["x"] + pane["width"] / 2, pane["y"] + 8]
-    follow(trial, page, "run page: panning, all in view", 20, ".graph .react-flow__pane", corner)
+    follow(trial, page, "run page: panning, all in view", 20, "[data-graph] .react-flow__pane", corner)
 
 
 def _leaf_paths(graph: Any) -> list[str]:
