@@ -8,14 +8,12 @@ from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.cell import (
     Cell,
     CellDocument,
-    Fixture,
-    Jitter,
     MujocoWorld,
-    PartSpec,
     RealismName,
     RobotSpec,
     load_cell,
 )
+from engine.document.cell_bodies import Fixture, Jitter, PartSpec
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,

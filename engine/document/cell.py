@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
 from msgspec import Meta
+from msgspec.structs import replace
 
-from engine.document.cell_frames import FrameSpec, fixed_frames, require_frames
+from engine.document.cell_bodies import Fixture, PartSpec
+from engine.document.cell_frames import FrameSpec, poses_in_world, require_frames
 from engine.document.cell_perception import (
     DepthCamera,
     OccupancyMap,
@@ -24,7 +26,7 @@ from engine.document.cell_perception import (
     UnknownBody,
 )
 from engine.document.parameter_spec import ParameterSpec
-from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
+from engine.document.placement import FramedPlacement, Name, Placement
 from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -86,62 +88,6 @@ TopicName = Annotated[
 ]
 
 
-class Jitter(StrictModel, frozen=True, kw_only=True):
-    """Maximum random offset of a part in a seeded run, uniform in both directions."""
-
-    xy_m: Offset = 0.0
-    yaw_rad: Angle = 0.0
-
-
-class Spring(StrictModel, frozen=True, kw_only=True):
-    """Compliance of a fixture along its z axis: foam, a part on a compliant table, a sprung pad.
-
-    Its surface is soft at first contact, which gives plausible forces while a tool slides over it;
-    on a rigid fixture forces are plausible only at rest.
-    """
-
-    stiffness_n_m: Annotated[float, Meta(gt=0.0, description="Stiffness of the spring in N/m")]
-    damping_ns_m: Annotated[float, Meta(ge=0.0, description="Damping of the spring in N s/m")] = 60.0
-    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of the moving body in kilograms")] = 0.1
-    friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of the surface")] = 0.3
-
-
-class Fixture(StrictModel, frozen=True, kw_only=True):
-    """A fixed body, or a compliant one with a `spring`.
-
-    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
-    edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
-    or cylinder, and the middle of the underside of a tray.
-    """
-
-    shape: Literal["box", "cylinder", "tray"]
-    size_m: tuple[Length, ...]
-    wall_m: Length = 0.005
-    at: Placement = Placement()
-    color: Color = "#b0b0b0"
-    spring: Spring | None = None
-
-
-class PartSpec(StrictModel, frozen=True, kw_only=True):
-    """A free body with contact physics; `magnetic` if it is of iron or steel.
-
-    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
-    `at` is its centre. `friction` is that of its surface with any other body, where it is not that of rubber pads on
-    dry steel or plastic: oil, wax, ice.
-    """
-
-    shape: Literal["box", "cylinder", "sphere"]
-    size_m: tuple[Length, ...]
-    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")]
-    magnetic: bool = False
-    friction: (
-        Annotated[float, Meta(gt=0.0, le=2.0, description="Coefficient of friction with any other body")] | None
-    ) = None
-    at: Placement = Placement()
-    jitter: Jitter = Jitter()
-    color: Color = "#d0d0d0"
-
-
 class CellDocument(StrictModel, frozen=True, kw_only=True):
     """A work cell as written."""
 
@@ -182,7 +128,28 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     @property
     def fixed_frames(self) -> dict[str, Pose]:
         """The poses of the named frames in the world."""
-        return fixed_frames(self.frames, {name: fixture.at.pose() for name, fixture in self.fixtures.items()})
+        poses = poses_in_world(self.frames, self.fixtures)
+        return {name: poses[name] for name in self.frames}
+
+    def placements(self) -> Iterator[tuple[DataPath, FramedPlacement]]:
+        """Yield where bodies stand that are no frames, each with its path in the document."""
+        yield from ((("parts", name, "at"), part.at) for name, part in self.parts.items())
+        yield from ((("unknown_bodies", name, "at"), body.at) for name, body in self.unknown_bodies.items())
+        yield from ((("robots", name, "base"), robot.base) for name, robot in self.robots.items())
+
+    def in_world(self) -> CellDocument:
+        """Return the same cell with everything placed in the world."""
+        poses = poses_in_world(self.frames, self.fixtures)
+        return replace(
+            self,
+            robots={name: replace(robot, base=robot.base.in_world(poses)) for name, robot in self.robots.items()},
+            fixtures={name: replace(each, at=each.at.in_world(poses)) for name, each in self.fixtures.items()},
+            parts={name: replace(part, at=part.at.in_world(poses)) for name, part in self.parts.items()},
+            unknown_bodies={
+                name: replace(body, at=body.at.in_world(poses)) for name, body in self.unknown_bodies.items()
+            },
+            cameras={name: camera.in_frames(self.fixed_frames) for name, camera in self.cameras.items()},
+        )
 
     @property
     def real_devices(self) -> dict[str, str]:
@@ -237,10 +204,11 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_people(document, source)
     _require_unknown_bodies(document, source)
     _require_regions(document, source)
+    _require_detection_frames(document, source)
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
-    require_frames(document.frames, source, fixtures=document.fixtures, taken=taken)
-    return Cell(document=document, file=file, source=source)
+    require_frames(document.frames, source, fixtures=document.fixtures, placed=document.placements(), taken=taken)
+    return Cell(document=document.in_world(), file=file, source=source)
 
 
 _LATER = "remove it"
@@ -375,6 +343,17 @@ def _require_regions(document: CellDocument, source: DocumentSource) -> None:
             where=source.position(("speed_and_separation_monitoring",), of_key=True),
             hint="add `cameras:` and `occupancy:`",
         )
+
+
+def _require_detection_frames(document: CellDocument, source: DocumentSource) -> None:
+    for name, camera in document.cameras.items():
+        detect = camera.detect
+        if detect is not None and detect.frame in document.frames and detect.frame_at != Placement():
+            raise DocumentError(
+                f"camera `{name}` detects in the frame `{detect.frame}` of the cell, whose pose is known",
+                where=source.position(("cameras", name, "detect", "frame_at"), of_key=True),
+                hint="remove `frame_at`, or choose another frame name",
+            )
 
 
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))

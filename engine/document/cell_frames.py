@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated
 
 from msgspec import Meta
 
-from engine.document.placement import Placement
+from engine.document.cell_bodies import Fixture
+from engine.document.placement import FramedPlacement, Placement
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
@@ -16,6 +17,7 @@ from engine.messages.pose_algebra import compose_poses
 from engine.wording import did_you_mean
 
 WORLD = "world"
+_ROOT = Pose(xyz=(0.0, 0.0, 0.0))
 _RESERVED = {WORLD: "root frame", "occupancy": "map of occupied space"}
 
 
@@ -28,62 +30,85 @@ class FrameSpec(StrictModel, frozen=True, kw_only=True):
     at: Placement = Placement()
 
 
-def fixed_frames(frames: Mapping[str, FrameSpec], fixtures: Mapping[str, Pose]) -> dict[str, Pose]:
-    """Return the poses of all frames in the world; `fixtures` are those of what they may stand on.
+def poses_in_world(frames: Mapping[str, FrameSpec], fixtures: Mapping[str, Fixture]) -> dict[str, Pose]:
+    """Return the poses of all frames, those of fixtures and `world` among them, in the world.
 
     The parents are known and form no circle, as `require_frames` requires.
     """
-    known: dict[str, Pose] = {WORLD: Pose(xyz=(0.0, 0.0, 0.0)), **fixtures}
-
-    def pose(name: str) -> Pose:
-        if name not in known:
-            spec = frames[name]
-            known[name] = compose_poses(pose(spec.parent), spec.at.pose())
-        return known[name]
-
-    return {name: pose(name) for name in frames}
+    anchors = _anchors(frames, fixtures)
+    known = {WORLD: _ROOT}
+    for name in anchors:
+        chain = [name]
+        while chain[-1] not in known:
+            chain.append(anchors[chain[-1]][0])
+        for each in reversed(chain[:-1]):
+            parent, pose = anchors[each]
+            known[each] = compose_poses(known[parent], pose)
+    return known
 
 
 def require_frames(
-    frames: Mapping[str, FrameSpec], source: DocumentSource, *, fixtures: Collection[str], taken: Mapping[str, str]
+    frames: Mapping[str, FrameSpec],
+    source: DocumentSource,
+    *,
+    fixtures: Mapping[str, Fixture],
+    placed: Iterator[tuple[DataPath, FramedPlacement]],
+    taken: Mapping[str, str],
 ) -> None:
-    """Require names of their own, and parents that lead to the world.
+    """Require names of their own, and that everything stands in a frame that leads to the world.
 
     Args:
         frames: The frames of the cell.
         source: The document.
-        fixtures: The names of the fixtures.
+        fixtures: The fixtures, which are frames too.
+        placed: What stands in a frame and is none, each with the place of its placement in the document.
         taken: What else has a name in the world, with what it is.
 
     Raises:
-        DocumentError: a name is taken, a parent is unknown, or frames are the parents of one another.
+        DocumentError: a name is taken, a frame is unknown, or frames stand in one another.
     """
     others = {**taken, **_RESERVED}
-    for name, spec in frames.items():
-        path: DataPath = ("frames", name)
+    for name in frames:
         if name in others:
             raise DocumentError(
                 f"`{name}` is both a frame and a {others[name]}",
-                where=source.position(path, of_key=True),
+                where=source.position(("frames", name), of_key=True),
                 hint="rename one",
             )
-        known = {WORLD, *fixtures, *frames} - {name}
-        if spec.parent not in known:
-            what = "itself" if spec.parent == name else "no fixture and no frame of the cell"
-            raise DocumentError(
-                f"the parent of frame `{name}`, `{spec.parent}`, is {what}",
-                where=source.position((*path, "parent")),
-                hint=did_you_mean(spec.parent, known),
-            )
-    for name in frames:
+    known = {WORLD, *fixtures, *frames}
+    paths: dict[str, DataPath] = {name: ("frames", name, "parent") for name in frames}
+    paths |= {name: ("fixtures", name, "at", "frame") for name in fixtures}
+    parents = {name: parent for name, (parent, _) in _anchors(frames, fixtures).items()}
+    uses = [(paths[name], parent, known - {name}) for name, parent in parents.items()]
+    uses += [((*path, "frame"), placement.frame, known) for path, placement in placed]
+    for path, frame, possible in uses:
+        if frame not in possible:
+            odd = "itself" if frame == path[1] else f"`{frame}`, which is no frame and no fixture of the cell"
+            hint = did_you_mean(frame, possible)
+            raise DocumentError(f"`{path[1]}` stands in {odd}", where=source.position(path), hint=hint)
+    _require_no_circle(parents, paths, source)
+
+
+def _require_no_circle(parents: Mapping[str, str], paths: Mapping[str, DataPath], source: DocumentSource) -> None:
+    grounded = {WORLD}
+    for name in parents:
         chain = [name]
-        while (parent := frames[chain[-1]].parent) in frames:
-            chain.append(parent)
-            if parent == name:
+        while chain[-1] not in grounded:
+            parent = parents[chain[-1]]
+            if parent in chain:
+                circle = [*chain[chain.index(parent) :], parent]
                 raise DocumentError(
-                    f"the frames {' → '.join(chain)} are parents of one another",
-                    where=source.position(("frames", name, "parent")),
-                    hint="fix one of them to `world` or to a fixture",
+                    f"{' → '.join(circle)} stand in one another",
+                    where=source.position(paths[parent]),
+                    hint="place one of them in `world`",
                 )
-            if parent in chain[:-1]:
-                break
+            chain.append(parent)
+        grounded.update(chain)
+
+
+def _anchors(frames: Mapping[str, FrameSpec], fixtures: Mapping[str, Fixture]) -> dict[str, tuple[str, Pose]]:
+    """Return in which frame each frame and fixture stands, and at which pose."""
+    return {
+        **{name: (spec.parent, spec.at.pose()) for name, spec in frames.items()},
+        **{name: (fixture.at.frame, fixture.at.pose()) for name, fixture in fixtures.items()},
+    }

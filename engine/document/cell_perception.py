@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from msgspec import Meta
+from msgspec.structs import replace
 
-from engine.document.placement import Angle, Color, Length, Name, Offset, Placement, PositionXyz
+from engine.document.placement import Angle, Color, FramedPlacement, Length, Name, Offset, Placement, PositionXyz
 from engine.document.text.decoding import StrictModel
+from engine.messages import Pose
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
 Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images per second")]
@@ -63,6 +66,12 @@ class DepthCamera(StrictModel, frozen=True, kw_only=True):
     noise_m: Offset = 0.0
     detect: ObjectDetector | None = None
     driver: Annotated[str, Meta(pattern="^sim$", description="`sim`")] = "sim"
+
+    def in_frames(self, frames: Mapping[str, Pose]) -> DepthCamera:
+        """Return the same camera, which detects in a frame of the cell where it names one."""
+        if self.detect is None or self.detect.frame not in frames:
+            return self
+        return replace(self, detect=replace(self.detect, frame_at=Placement.of(frames[self.detect.frame])))
 
 
 _ROUNDING_M = 1e-6
@@ -139,7 +148,7 @@ class UnknownBody(StrictModel, frozen=True, kw_only=True):
     shape: Literal["box", "cylinder", "sphere"]
     size_m: tuple[Length, ...]
     mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")] | None = None
-    at: Placement = Placement()
+    at: FramedPlacement = FramedPlacement()
     color: Color = "#a04040"
 
 

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Self
 
 from msgspec import Meta
 
 from engine.document.text.decoding import StrictModel
 from engine.messages import Pose, Quaternion, Vector3
+from engine.messages.pose_algebra import compose_poses
 
 _METRES, _RADIANS = {"unit": "m"}, {"unit": "rad"}
+
+# Sine of the pitch beyond which roll and yaw turn about the same axis.
+_UPRIGHT = 1.0 - 1e-9
 
 Length = Annotated[float, Meta(gt=0.0, description="A length in metres, above 0", extra_json_schema=_METRES)]
 Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or more", extra_json_schema=_RADIANS)]
@@ -27,9 +32,38 @@ class Placement(StrictModel, frozen=True, kw_only=True):
     xyz: PositionXyz = (0.0, 0.0, 0.0)
     rpy: RotationRpy = (0.0, 0.0, 0.0)
 
+    @classmethod
+    def of(cls, pose: Pose) -> Self:
+        """Return the placement of a pose, without its frame."""
+        return cls(xyz=pose.xyz, rpy=_roll_pitch_yaw(pose.xyzw))
+
     def pose(self) -> Pose:
         """Return the placement as a pose in the frame `world`, or in the parent of a frame."""
         return Pose(xyz=self.xyz, xyzw=_quaternion(self.rpy))
+
+
+class FramedPlacement(Placement, frozen=True, kw_only=True):
+    """A pose in a frame of the cell; in a `Cell` that was loaded, it is in the world."""
+
+    frame: Annotated[
+        str, Meta(min_length=1, description="What it is relative to: `world`, a named frame, or a fixture")
+    ] = "world"
+
+    def in_world(self, frames: Mapping[str, Pose]) -> FramedPlacement:
+        """Return the same place in the world; `frames` are the poses of all frames in the world."""
+        if self.frame == "world":
+            return self
+        return FramedPlacement.of(compose_poses(frames[self.frame], self.pose()))
+
+
+def _roll_pitch_yaw(xyzw: Quaternion) -> Vector3:
+    """Return the angles about the fixed axes x, y, z; where y is turned by 90°, x is not turned at all."""
+    x, y, z, w = xyzw
+    sine = max(-1.0, min(1.0, 2.0 * (w * y - z * x)))
+    if abs(sine) > _UPRIGHT:
+        return 0.0, math.copysign(math.pi / 2.0, sine), math.copysign(2.0, -sine) * math.atan2(x, w)
+    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    return roll, math.asin(sine), math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def _quaternion(rpy: Vector3) -> Quaternion:

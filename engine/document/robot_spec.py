@@ -6,7 +6,7 @@ from typing import Annotated, Literal, cast
 
 from msgspec import Meta
 
-from engine.document.placement import Placement
+from engine.document.placement import FramedPlacement
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
@@ -43,7 +43,7 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
 
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
     driver: Literal["sim"] | dict[str, object] = "sim"
-    base: Placement = Placement()
+    base: FramedPlacement = FramedPlacement()
     gripper: GripperSpec | None = None
     calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
     coupled_joints: bool = False

@@ -11,7 +11,8 @@ import msgspec
 from engine.cell.cell_names import CellNameKind, CellNames, cell_names
 from engine.cell.robot_models import RobotSummary, robot_models, tool_kinds
 from engine.check.cell.entry_references import Entries
-from engine.document.cell import Cell, Fixture, PartSpec
+from engine.document.cell import Cell
+from engine.document.cell_bodies import Fixture, PartSpec
 from engine.document.entries_document import load_entries
 from engine.editing.adaptation.name_uses import NameUse
 from engine.errors import DocumentError, FlexcellError

@@ -7,7 +7,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.document.cell import CellDocument, Fixture, MujocoWorld, Spring, load_cell
+from engine.document.cell import CellDocument, MujocoWorld, load_cell
+from engine.document.cell_bodies import Fixture, Spring
 from engine.document.robot_spec import GripperSpec
 from engine.errors import CellError
 from robots.scene.scene_builder import build_scene

@@ -1,0 +1,66 @@
+"""What stands and lies in a cell: fixtures and parts."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.placement import Angle, Color, FramedPlacement, Length, Offset
+from engine.document.text.decoding import StrictModel
+
+
+class Jitter(StrictModel, frozen=True, kw_only=True):
+    """Maximum random offset of a part in a seeded run, uniform in both directions."""
+
+    xy_m: Offset = 0.0
+    yaw_rad: Angle = 0.0
+
+
+class Spring(StrictModel, frozen=True, kw_only=True):
+    """Compliance of a fixture along its z axis: foam, a part on a compliant table, a sprung pad.
+
+    Its surface is soft at first contact, which gives plausible forces while a tool slides over it;
+    on a rigid fixture forces are plausible only at rest.
+    """
+
+    stiffness_n_m: Annotated[float, Meta(gt=0.0, description="Stiffness of the spring in N/m")]
+    damping_ns_m: Annotated[float, Meta(ge=0.0, description="Damping of the spring in N s/m")] = 60.0
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of the moving body in kilograms")] = 0.1
+    friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of the surface")] = 0.3
+
+
+class Fixture(StrictModel, frozen=True, kw_only=True):
+    """A fixed body, or a compliant one with a `spring`.
+
+    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
+    edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
+    or cylinder, and the middle of the underside of a tray.
+    """
+
+    shape: Literal["box", "cylinder", "tray"]
+    size_m: tuple[Length, ...]
+    wall_m: Length = 0.005
+    at: FramedPlacement = FramedPlacement()
+    color: Color = "#b0b0b0"
+    spring: Spring | None = None
+
+
+class PartSpec(StrictModel, frozen=True, kw_only=True):
+    """A free body with contact physics; `magnetic` if it is of iron or steel.
+
+    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
+    `at` is its centre. `friction` is that of its surface with any other body, where it is not that of rubber pads on
+    dry steel or plastic: oil, wax, ice.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    size_m: tuple[Length, ...]
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")]
+    magnetic: bool = False
+    friction: (
+        Annotated[float, Meta(gt=0.0, le=2.0, description="Coefficient of friction with any other body")] | None
+    ) = None
+    at: FramedPlacement = FramedPlacement()
+    jitter: Jitter = Jitter()
+    color: Color = "#d0d0d0"
