@@ -90,6 +90,7 @@ const BUILD = table('editor', 'Build', [
 ])
 const ARRANGE = table('editor', 'Arrange', [
   ['layout', 'Auto-layout', 'l'],
+  ['layout-selected', 'Auto-layout of the selected nodes', 'Shift+l'],
   ['align-left', 'Align left'],
   ['align-right', 'Align right'],
   ['align-bottom', 'Align bottom'],
