@@ -67,6 +67,7 @@ const DOCUMENT = table('editor', 'Document', [
   ['versions', 'Versions: compare and restore', 'h'],
   ['svg', 'Export as SVG'],
   ['png', 'Export as PNG'],
+  ['pdf', 'Export as PDF'],
   ['problem', 'Go to the next problem', 'F8'],
 ])
 const BUILD = table('editor', 'Build', [
