@@ -38,7 +38,7 @@ def lie_apart(one: FloatRect, other: FloatRect) -> bool:
 
 def test_selected_nodes_are_laid_out_among_themselves_and_the_others_stay(browser: Browser, shop: Workshop) -> None:
     """By button and by key, around where they were, over nothing; one step of undo gives every byte back."""
-    scattered = {"first": [300, 40], "set": [40, 300], "both": [330, 220], "rest": [900, 0]}
+    scattered = {"first": [600, 40], "set": [0, 300], "both": [330, 130], "rest": [1100, 0]}
     places = "".join(f"  root/{name}: {at}\n" for name, at in scattered.items())
     with (shop.project / SHIFT_ID).open("a", encoding="utf-8") as file:
         file.write(f"view:\n{places}")

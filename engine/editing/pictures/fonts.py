@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 import sys
 from collections.abc import Iterator, Sequence
 from functools import cached_property
@@ -18,6 +19,8 @@ INSTALL_FONT = "install one, such as `fonts-dejavu-core`, or write an SVG"
 _SUFFIX = ".ttf"
 _BOLD = ("-bold", "bd", "b", " bold")
 _REGULAR = ("-regular", "")
+_FILE_NAMES = {"Consolas": "consola"}
+"""Of families whose files are called otherwise."""
 _MOST_OTHERS = 50
 """To open a font takes some 30 ms."""
 _LEAST_BOLD = 501
@@ -80,7 +83,8 @@ class FontChoice:
     def _candidates(self, families: Sequence[str], *, bold: bool) -> Iterator[Any]:
         """Yield fonts in the order in which they are asked for a letter: those named, then all others."""
         for family in families:
-            stems = [f"{family.lower().replace(' ', '')}{ending}" for ending in (*(_BOLD if bold else ()), *_REGULAR)]
+            own = _FILE_NAMES.get(family, family.lower().replace(" ", ""))
+            stems = [f"{own}{ending}" for ending in (*(_BOLD if bold else ()), *_REGULAR)]
             files = (self._files[stem] for stem in stems if stem in self._files)
             yield from filter(None, map(self._opened, files))
         for file in islice(self._files.values(), _MOST_OTHERS):
@@ -94,7 +98,7 @@ class FontChoice:
         if name not in self._metrics.getRegisteredFontNames():
             try:
                 self._metrics.registerFont(self._fonts.TTFont(name, name))
-            except (OSError, self._fonts.TTFError):
+            except (OSError, ValueError, LookupError, struct.error, self._fonts.TTFError):
                 return None
         return self._metrics.getFont(name)
 

@@ -169,7 +169,8 @@ class _Drawing:
     def _run(self, text: str | None, style: Style) -> _Run:
         families = [each.strip(" '\"") for each in style.get("font-family", "").split(",")]
         weight = _first(style.get("font-weight", "400"))
-        return _Run(self.fonts.pieces(text or "", families, weight), style)
+        words = re.sub(r"\s", " ", text or "")
+        return _Run(self.fonts.pieces(words, families, weight), style)
 
     def _width(self, run: _Run) -> float:
         return sum(self.page.stringWidth(words, font, run.size) for words, font in run.pieces)

@@ -25,7 +25,7 @@ SHAPES = f"""{HEAD}<title>shift &lt;1&gt;</title>
 <text x="10" y="140" style="font-size:14px;font-weight:620;fill:#000000"
 >grasp<tspan dx="8" style="font-size:11px;font-weight:400">Держать → ×2</tspan></text>
 <text x="380" y="140" style="font-size:14px;text-anchor:end;fill:#000000">held</text>
-<text x="10" y="160" style="font-size:12px;fill:#000000"><tspan>both</tspan><tspan x="200">left = a</tspan></text>
+<text x="10" y="160" style="font-size:12px;fill:#000000"><tspan>both</tspan><tspan x="200">left =\ta</tspan></text>
 </g>
 </svg>
 """

@@ -109,8 +109,8 @@ def test_containers_are_opened_by_name_and_by_level(tmp_path: Path) -> None:
     assert "rinse" not in one
     assert {"grip", "rinse"} <= names("--depth", "1")
     said = flexcell("picture", BEHAVIOR, "-o", "b.svg", "--open", "root/pik", cwd=tmp_path)
-    hint = "did you mean root/pick?"
-    assert (said.code, said.err) == (2, f"flexcell: --open root/pik: there is no such container ({hint})\n")
+    assert said.code == 2
+    assert said.err.startswith("flexcell: --open root/pik: there is no such container (did you mean root/pick")
     said = flexcell("picture", BEHAVIOR, "-o", "b.svg", "--all", "--depth", "1", cwd=tmp_path)
     assert (said.code, said.err) == (2, "flexcell: --all and --depth say different things (give one of them)\n")
     assert not (tmp_path / "b.svg").exists()
