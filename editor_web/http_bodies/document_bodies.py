@@ -50,6 +50,12 @@ class TextBody(RequestBody, frozen=True, kw_only=True):
     text: Text
 
 
+class PictureBody(RequestBody, frozen=True, kw_only=True):
+    """The drawing of a behavior, as the page exports it."""
+
+    svg: str
+
+
 class TargetsBody(TextBody, frozen=True, kw_only=True):
     """A text whose targets are checked; a newer request of the same page replaces the pending one."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import HTTPException, Query
+from fastapi import HTTPException, Query, Response
 from msgspec.structs import asdict
 from starlette.concurrency import run_in_threadpool
 
@@ -19,6 +19,7 @@ from editor_web.http_bodies.document_bodies import (
     MergeBody,
     NewDocumentBody,
     NewIdBody,
+    PictureBody,
     SaveBody,
     SaveResultBody,
     TargetFindingsBody,
@@ -39,8 +40,11 @@ from engine.editing import (
     StoredDocument,
     compare_texts,
     copy_nodes,
+    pdf_of,
 )
 from engine.library import FindingView
+
+PDF = "application/pdf"
 
 router = WireRouter(
     prefix="/api/v1/documents",
@@ -114,6 +118,13 @@ def copy(document_id: str, body: CopyBody, services: ServicesOf) -> CopyResultBo
     """Return nodes of a text as YAML with their comments, ready to paste."""
     context = services.documents.context(document_id)
     return CopyResultBody(yaml=copy_nodes(body.text, body.paths, file=document_id, context=context))
+
+
+@router.post("/{document_id:path}/pdf", responses={200: {"content": {PDF: {}}}})
+def write_pdf(document_id: str, body: PictureBody) -> Response:
+    """Return the drawing of a document as a PDF; 422 if it is no drawing of a behavior."""
+    del document_id
+    return Response(pdf_of(body.svg), media_type=PDF)
 
 
 @router.post("/{document_id:path}/rename")

@@ -16,6 +16,7 @@ from engine.editing.document_repository import DocumentRepository
 from engine.editing.draft_cache import EditAnswer
 from engine.editing.edits.apply import EditRefusal, EditResult, apply_edits, copy_nodes
 from engine.editing.edits.edit import AnyEdit
+from engine.editing.pictures.pdf import pdf_of
 from engine.editing.project_context import ProjectContext
 from engine.editing.references import ReferringBehavior, move_with_references, referrers
 from engine.editing.state_source import StateSource, state_source
@@ -64,6 +65,7 @@ __all__ = [
     "container_views",
     "copy_nodes",
     "move_with_references",
+    "pdf_of",
     "plan_adaptation",
     "proposed_file",
     "referrers",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.editor_web.browsing import Scheme, opened_page
 from tests.editor_web.teach_site import TeachSite
+from tests.editor_web.viser_page import ViserPage, served_view
 
 LAPTOP = (1280, 800)
 SOUTH, DEADMAN, SHIFT, START = 0, 4, 5, 9
@@ -46,6 +48,25 @@ def tab(page: Page, name: str) -> Locator:
     """Open a tab."""
     page.get_by_role("tab", name=name, exact=True).click()
     return page.get_by_role("tabpanel", name=name, exact=True)
+
+
+@contextmanager
+def seeing(site: TeachSite, name: str) -> Generator[ViserPage]:
+    """A 3D view beside that of the page, of the same name or another."""
+    with ExitStack() as stack:
+        view = served_view(site.running, name)
+        opened = site.call(view.__aenter__())
+        stack.callback(lambda: site.call(view.__aexit__(None, None, None)))
+        yield opened
+
+
+def name_of(page: Page) -> str:
+    """What the page calls itself."""
+    found = re.fullmatch(
+        r"http://[^/]+/cell/(\w+)/.*", page.locator("iframe[title='3D view of the cell']").get_attribute("src") or ""
+    )
+    assert found is not None
+    return found[1]
 
 
 class Gamepads:

@@ -201,6 +201,34 @@ def test_the_whole_behavior_is_exported_as_a_standalone_picture(
         assert size[2] == canvas
 
 
+@pytest.mark.parametrize(("scheme", "canvas"), [("light", "#f8f9fb"), ("dark", "#13161b")])
+def test_the_whole_behavior_is_exported_as_a_pdf(
+    browser: Browser, shop: Workshop, tmp_path: Path, scheme: Scheme, canvas: str
+) -> None:
+    """As it is on the page, not as it is saved: with an edit, and the words as words."""
+    pytest.importorskip("reportlab", reason="what writes PDF is not installed")
+    pdfium: Any = pytest.importorskip("pypdfium2", reason="what reads PDF is not installed")
+    with at_editor(browser, shop, SHIFT_ID, scheme=scheme) as page:
+        card(page, "root/set").click()
+        page.keyboard.press("F2")
+        page.keyboard.type("put")
+        page.keyboard.press("Enter")
+        expect(card(page, "root/put")).to_be_visible()
+        idle(page)
+        page.get_by_role("button", name="File", exact=True).click()
+        with page.expect_download() as download:
+            page.get_by_role("menuitem", name="Export as PDF").click()
+        assert download.value.suggested_filename == "shift.pdf"
+        download.value.save_as(tmp_path / "a.pdf")
+    document = pdfium.PdfDocument(tmp_path / "a.pdf")
+    assert (len(document), document.get_metadata_value("Title")) == (1, "shift")
+    words = document[0].get_textpage().get_text_bounded()
+    for name in ("first", "put", "left", "right", "rest", "Ends with", "finished"):
+        assert name in words
+    corner = document[0].render(scale=1).to_pil().convert("RGB").getpixel((2, 2))
+    assert "#{:02x}{:02x}{:02x}".format(*corner) == canvas
+
+
 class Shelf:
     """The services of a store with one entry."""
 

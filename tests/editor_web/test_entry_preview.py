@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Generator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from typing import Any
 
 import msgspec
@@ -18,6 +18,7 @@ from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import WriteEntry
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.teach_page import name_of, seeing
 from tests.editor_web.teach_site import CELL, TeachSite
 from tests.editor_web.viser_page import ViserPage, served_view
 from tests.editor_web.workshop import NAP_ID, Workshop
@@ -126,25 +127,6 @@ def preview_of(page: Page, name: str) -> Locator:
     shown = page.get_by_label(f"Preview of {name}", exact=True)
     expect(shown).to_be_visible()
     return shown
-
-
-@contextmanager
-def seeing(site: TeachSite, name: str) -> Generator[ViserPage]:
-    """A 3D view beside that of the page, of the same name or another."""
-    with ExitStack() as stack:
-        view = served_view(site.running, name)
-        opened = site.call(view.__aenter__())
-        stack.callback(lambda: site.call(view.__aexit__(None, None, None)))
-        yield opened
-
-
-def name_of(page: Page) -> str:
-    """What the page calls itself."""
-    found = re.fullmatch(
-        r"http://[^/]+/cell/(\w+)/.*", page.locator("iframe[title='3D view of the cell']").get_attribute("src") or ""
-    )
-    assert found is not None
-    return found[1]
 
 
 def is_ghost(view: ViserPage, arm: str) -> bool:

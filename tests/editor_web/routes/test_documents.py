@@ -315,3 +315,16 @@ async def test_without_a_token_and_from_other_pages_nothing_is_answered(client: 
     evil = {**cookie, "Origin": "http://evil.example"}
     assert (await bare.put(AT, json={"text": SHIFT, "base_hash": "0" * 64}, headers=evil)).status_code == 403
     assert (await bare.get(AT, headers={**cookie, "Host": "evil.example"})).status_code == 421
+
+
+async def test_the_drawing_of_the_page_becomes_a_pdf_and_nothing_else_does(client: EditingClient) -> None:
+    pytest.importorskip("reportlab", reason="what writes PDF is not installed")
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><rect x="0" y="0" width="9" height="9"></rect></svg>'
+    )
+    made = await client.post(f"{AT}/pdf", {"svg": svg})
+    assert (made.status_code, made.headers["content-type"]) == (200, "application/pdf")
+    assert made.content.startswith(b"%PDF-")
+    refused = await client.post(f"{AT}/pdf", {"svg": svg.replace("rect", "image")})
+    assert refused.status_code == 422
+    assert refused.json()["message"] == "an SVG with <image> is none of a behavior"

@@ -57,8 +57,19 @@ export async function call<T>(path: string, init?: RequestInit): Promise<T> {
   const response = await request(path, init)
   const text = await response.text()
   const body: unknown = text ? parse(text) : undefined
-  if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body), body)
+  if (!response.ok) throw refusedBy(response, body)
   return body as T
+}
+
+/** Send a body to `/api/v1…` for a file; a refusal is a ServerError. */
+export async function postForFile(path: string, body: unknown): Promise<Blob> {
+  const response = await request(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })
+  if (!response.ok) throw refusedBy(response, parse(await response.text()))
+  return response.blob()
+}
+
+function refusedBy(response: Response, body: unknown): ServerError {
+  return new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body), body)
 }
 
 function parse(text: string): unknown {

@@ -1,5 +1,5 @@
 /** Editing over HTTP: documents, drafts, edits of texts, saving, and what can be put into a behavior. */
-import { call, post, sent, ServerError } from './client'
+import { call, post, postForFile, sent, ServerError } from './client'
 import type {
   CatalogueBody,
   ConflictBody,
@@ -36,6 +36,8 @@ export const documents = {
   edit: (id: string, text: string, edits: readonly Edit[], { check, graph }: { readonly check: boolean; readonly graph: string | null }) =>
     post<EditAnswer>(at(id, '/edits'), { text, edits, check, graph }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopyResultBody>(at(id, '/copy'), { text, paths }),
+  /** The drawing of a document as a PDF, made of its SVG. */
+  pdf: (id: string, svg: string) => postForFile(at(id, '/pdf'), { svg }),
   save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
   /** What a save would meet, merged with these sides; nothing is written. */
   merge: (id: string, text: string, baseHash: string, sides: MergeSides) =>

@@ -1951,6 +1951,11 @@ export interface PauseConfirmed {
   readonly cannot?: readonly string[]
 }
 
+/** The drawing of a behavior, as the page exports it. */
+export interface PictureBody {
+  readonly svg: string
+}
+
 /** Keep-alive; a page that does not answer with `Pong` in time is disconnected. */
 export interface Ping {
   readonly k: "ping"

@@ -21,6 +21,7 @@ const INFO = {
   outcomes: ['good'],
   success: [],
 } as DocumentInfo
+const NOTHING = { all: false, depth: null, open: [] }
 const CHAIN = [
   ['a', 'done', 'b'],
   ['b', 'done', 'good'],
@@ -49,7 +50,7 @@ it('is the drawing of the page, in the colours of the scheme', async () => {
   const palette = paletteOf(schemeTokens(tokens, 'dark'))
   flushSync(() => createRoot(host).render(<Picture drawn={drawn} title={INFO.name} palette={palette} />))
   const made = document.createElement('div')
-  made.innerHTML = (await pictureFile({ graph: GRAPH, document: INFO, scheme: 'dark', all: false })).split('?>')[1] ?? ''
+  made.innerHTML = (await pictureFile({ graph: GRAPH, document: INFO, scheme: 'dark', ...NOTHING })).split('?>')[1] ?? ''
   expect(made.querySelector('svg')?.childElementCount).toBeGreaterThan(5)
   const shapes = (of: Element) =>
     [...of.querySelectorAll('*')].map((each) => [each.tagName, each.getAttribute('d'), each.getAttribute('x'), each.getAttribute('y')])
@@ -59,8 +60,23 @@ it('is the drawing of the page, in the colours of the scheme', async () => {
 })
 
 it('lays out what branches by the engine, and can open everything', async () => {
-  const svg = await pictureFile({ graph: BRANCHING, document: INFO, scheme: 'light', all: true })
+  const svg = await pictureFile({ graph: BRANCHING, document: INFO, scheme: 'light', ...NOTHING, all: true })
   expect(svg.startsWith('<?xml version="1.0" encoding="UTF-8"?>\n<svg xmlns="http://www.w3.org/2000/svg"')).toBe(true)
   expect(svg).toContain('shift &lt;1&gt;')
   expect(svg.match(/<path/g)?.length).toBe(5)
+})
+
+it('opens the containers of so many levels, and those that are named with what is around them', async () => {
+  const inner = (path: string, children: readonly DocumentNode[]) => machineNode(path, children[0]?.name ?? '', children, [])
+  const [deep, other] = ['root/one/two', 'root/other'].map((path) => inner(path, [node(`${path}/last`, ['done'])]))
+  if (!deep || !other) throw new Error('there are two')
+  const graph = inner('root', [inner('root/one', [deep]), other])
+  const shown = async (opened: Partial<typeof NOTHING> | { readonly depth: number; readonly open?: readonly string[] }) => {
+    const svg = await pictureFile({ graph, document: INFO, scheme: 'light', ...NOTHING, ...opened })
+    return ['>two', '>last'].map((name) => svg.split(name).length - 1)
+  }
+  expect(await shown({ depth: 0 })).toEqual([0, 0])
+  expect(await shown({ depth: 1 })).toEqual([1, 1])
+  expect(await shown({ depth: 0, open: ['root/one/two'] })).toEqual([1, 1])
+  expect(await shown({ depth: 2 })).toEqual([1, 2])
 })

@@ -67,6 +67,7 @@ const DOCUMENT = table('editor', 'Document', [
   ['versions', 'Versions: compare and restore', 'h'],
   ['svg', 'Export as SVG'],
   ['png', 'Export as PNG'],
+  ['pdf', 'Export as PDF'],
   ['problem', 'Go to the next problem', 'F8'],
 ])
 const BUILD = table('editor', 'Build', [
@@ -90,6 +91,7 @@ const BUILD = table('editor', 'Build', [
 ])
 const ARRANGE = table('editor', 'Arrange', [
   ['layout', 'Auto-layout', 'l'],
+  ['layout-selected', 'Auto-layout of the selected nodes', 'Shift+l'],
   ['align-left', 'Align left'],
   ['align-right', 'Align right'],
   ['align-bottom', 'Align bottom'],

@@ -16,6 +16,40 @@ export function moved(point: Point, by: Point): Point {
   return { x: point.x + by.x, y: point.y + by.y }
 }
 
+/** The place nearest to where a box is, straight to one side, where it is so far apart from all that is taken. */
+export function freePlace({ x, y, width, height }: Box, taken: readonly Box[], apart: number): Point {
+  const at: Point = { x, y }
+  const covered = (place: Point) =>
+    taken.find(
+      (box) =>
+        box.x < place.x + width + apart &&
+        box.x + box.width + apart > place.x &&
+        box.y < place.y + height + apart &&
+        box.y + box.height + apart > place.y,
+    )
+  const past = (step: (box: Box, place: Point) => Point) => {
+    let place = at
+    for (let box = covered(place); box; box = covered(place)) place = step(box, place)
+    return place
+  }
+  const places = [
+    past((box, from) => ({ x: from.x, y: box.y + box.height + apart })),
+    past((box, from) => ({ x: from.x, y: box.y - height - apart })),
+    past((box, from) => ({ x: box.x + box.width + apart, y: from.y })),
+    past((box, from) => ({ x: box.x - width - apart, y: from.y })),
+  ]
+  return places.reduce((best, place) => (distance(place, at) < distance(best, at) ? place : best))
+}
+
+/** The box around all of these; they are at least one. */
+export function boundsOf(boxes: readonly Box[]): Box {
+  const x = boxes.reduce((least, box) => Math.min(least, box.x), Infinity)
+  const y = boxes.reduce((least, box) => Math.min(least, box.y), Infinity)
+  const right = boxes.reduce((most, box) => Math.max(most, box.x + box.width), -Infinity)
+  const bottom = boxes.reduce((most, box) => Math.max(most, box.y + box.height), -Infinity)
+  return { x, y, width: right - x, height: bottom - y }
+}
+
 /** A path through the points with rounded corners, for an SVG `d`. */
 export function roundedPath(points: readonly Point[], radius = 8): string {
   const [first, ...rest] = points

@@ -5,14 +5,15 @@
  * children stay where they were put. Boxes are relative to the frame they stand in, routes to the
  * outermost one; a route that is missing is drawn from port to port by the canvas.
  */
+import type { GraphTransition } from '../../api/types'
 import { chainOf, layOutChain } from '../chain'
-import { flowOf } from '../flow'
+import { flowOf, type Flow } from '../flow'
 import { moved, type Box, type Point, type Size } from '../geometry'
 import type { LayoutCall } from '../elkGraph'
 import { edgeId, outcomeId } from '../edgeId'
 import { noteBoxes } from './canvasNotes'
 import { adopt, empty, put, sized, type Content } from './content'
-import { byEngine, entryOf, portOf } from './engineLayout'
+import { byEngine, entryOf, portOf, type EngineOptions } from './engineLayout'
 import { FRAME_HEAD, frameWidth, leafSize, PILL_HEIGHT, pillsOf, pillWidth, rowsHeight, tableHeight, twigSize } from './measure'
 import { isFrame, isMachine, isTreePart, outgoingTransitions, type EditNode } from './model'
 
@@ -244,6 +245,22 @@ async function laidOut(node: EditNode, units: readonly Content[], drawn: readonl
     shown,
     node.initial,
   )
+  return alongFlow(node, units, drawn, { flow, shown }, options)
+}
+
+interface Course {
+  readonly flow: Flow
+  /** The transitions that are drawn. */
+  readonly shown: readonly GraphTransition[]
+}
+
+async function alongFlow(
+  node: EditNode,
+  units: readonly Content[],
+  drawn: readonly string[],
+  { flow, shown }: Course,
+  options: EngineOptions,
+): Promise<Content> {
   const chain = chainOf(flow, shown, drawn)
   const content = chain
     ? inRows(node, units, [flow.order[0] ?? '', ...chain.map((t) => t.target)], chain, options.rowLimit)
@@ -251,6 +268,37 @@ async function laidOut(node: EditNode, units: readonly Content[], drawn: readonl
   standAside(node, units, content, flow.loose, options.rowLimit)
   return content
 }
+
+/**
+ * Some children of a machine, laid out among themselves in the order that they have in the whole machine; `sizes` are
+ * those of the nodes as they are drawn, by path. Their boxes, of which none begins left of or above 0.
+ */
+export async function arrangeAmong(
+  node: EditNode,
+  sizes: ReadonlyMap<string, Size>,
+  options: EngineOptions,
+): Promise<ReadonlyMap<string, Box>> {
+  const children = node.children.filter((child) => sizes.has(child.path))
+  const names = new Set(children.map((child) => child.name))
+  const ofThese = (all: readonly string[]) => all.filter((name) => names.has(name))
+  const whole = flowOf(
+    node.children.map((child) => child.name),
+    node.transitions,
+    node.initial,
+  )
+  const loose = ofThese(whole.loose)
+  // Where no transition leads to or from any of them, there is nothing beside which they would stand aside.
+  const isLoose = loose.length === children.length
+  const flow = isLoose
+    ? { order: loose, downwards: loose, loose: [] }
+    : { order: ofThese(whole.order), downwards: ofThese(whole.downwards), loose }
+  const shown = node.transitions.filter((t) => names.has(t.source) && names.has(t.target))
+  const units = children.map((child) => sized(sizes.get(child.path) ?? NO_SIZE))
+  const content = await alongFlow({ ...node, children }, units, [], { flow, shown }, options)
+  return content.own
+}
+
+const NO_SIZE: Size = { width: 0, height: 0 }
 
 /** What nothing leads to or from stands below the others, in rows of its own. */
 function standAside(node: EditNode, units: readonly Content[], content: Content, loose: readonly string[], limit: number): void {

@@ -2,12 +2,12 @@
 import { expect, test } from 'vitest'
 import { arrange } from './arrange'
 import {
-  freePlace,
   linesOf,
   movedNote,
   newNote,
   noteId,
   noteBoxes,
+  placeForNote,
   resizedNote,
   setCanvasNote,
   spokenNote,
@@ -63,11 +63,11 @@ test('it is moved and resized by whole pixels, and stays large enough to be seen
 })
 
 test('a new one comes where it covers nothing, as near as can be', () => {
-  expect(freePlace({ x: 5, y: 5 }, [])).toEqual({ x: 5, y: 5 })
+  expect(placeForNote({ x: 5, y: 5 }, [])).toEqual({ x: 5, y: 5 })
   const wide = { x: -500, y: 0, width: 1000, height: 100 }
-  expect(freePlace({ x: 0, y: 60 }, [wide])).toEqual({ x: 0, y: 112 })
-  expect(freePlace({ x: 0, y: -10 }, [wide])).toEqual({ x: 0, y: -102 })
-  expect(freePlace({ x: 0, y: 60 }, [wide, { x: 0, y: 120, width: 10, height: 10 }, { ...wide, y: -200 }])).toEqual({ x: 0, y: 142 })
+  expect(placeForNote({ x: 0, y: 60 }, [wide])).toEqual({ x: 0, y: 112 })
+  expect(placeForNote({ x: 0, y: -10 }, [wide])).toEqual({ x: 0, y: -102 })
+  expect(placeForNote({ x: 0, y: 60 }, [wide, { x: 0, y: 120, width: 10, height: 10 }, { ...wide, y: -200 }])).toEqual({ x: 0, y: 142 })
 })
 
 test('two people who add one each give them different names, and what it says is spoken', () => {

@@ -1,7 +1,7 @@
 /** Free notes on the canvas of a container: their places, changes and names. Pure. */
 import type { CanvasNote } from '../../api/types'
 import { lookup, without } from '../dict'
-import { moved, type Box, type Point } from '../geometry'
+import { freePlace, moved, type Box, type Point } from '../geometry'
 import { nameOfPath } from '../path'
 import { corner, type Edit } from './edits'
 import { nodeOf, ROOT, withNode, type EditNode } from './model'
@@ -13,6 +13,7 @@ export type { CanvasNote } from '../../api/types'
 export const NOTE_COLOURS: readonly NoteColour[] = ['yellow', 'blue', 'green', 'pink', 'grey']
 const NEW_SIZE = [200, 90] as const
 const LEAST_PX = 40
+const APART_PX = 12
 
 /** Names a note: the container on whose canvas it stands, and its name there. */
 export interface NoteRef {
@@ -27,6 +28,11 @@ export function isSameNote(one: NoteRef | undefined, other: NoteRef): boolean {
 /** The id of its box; no node or outcome has a blank in its name. */
 export function noteId({ path, name }: NoteRef): string {
   return `${path}#note ${name}`
+}
+
+/** Is this the id of a note on the canvas of a container? */
+export function isNoteOn(path: string, id: string): boolean {
+  return id.startsWith(noteId({ path, name: '' }))
 }
 
 /** The edit that writes a note; null takes it away. */
@@ -55,40 +61,18 @@ export function boxOfNote({ position: [x, y], size: [width, height] }: CanvasNot
   return { ...moved({ x, y }, origin), width, height }
 }
 
+/** The place nearest to one where a new note covers nothing of what is drawn, and nothing covers it. */
+export function placeForNote(at: Point, taken: readonly Box[]): Point {
+  const [width, height] = NEW_SIZE
+  return freePlace({ ...at, width, height }, taken, APART_PX)
+}
+
 /** A new note at a place. Its name is one that nobody else chooses who edits the same file: notes are merged by it. */
 export function newNote(path: string, at: Point, random: () => number = Math.random): NoteRef & { readonly note: CanvasNote } {
   const name = `n${Math.floor(random() * 36 ** 5)
     .toString(36)
     .padStart(5, '0')}`
   return { path, name, note: { text: '', position: corner(at.x, at.y), size: NEW_SIZE, colour: 'yellow' } }
-}
-
-const APART_PX = 12
-
-/** The place nearest to one where a new note covers nothing of what is drawn, and nothing covers it. */
-export function freePlace(at: Point, taken: readonly Box[]): Point {
-  const [width, height] = NEW_SIZE
-  const covered = (place: Point) =>
-    taken.find(
-      (box) =>
-        box.x < place.x + width + APART_PX &&
-        box.x + box.width + APART_PX > place.x &&
-        box.y < place.y + height + APART_PX &&
-        box.y + box.height + APART_PX > place.y,
-    )
-  const past = (step: (box: Box, place: Point) => Point) => {
-    let place = at
-    for (let box = covered(place); box; box = covered(place)) place = step(box, place)
-    return place
-  }
-  const places = [
-    past((box, { x }) => ({ x, y: box.y + box.height + APART_PX })),
-    past((box, { x }) => ({ x, y: box.y - height - APART_PX })),
-    past((box, { y }) => ({ x: box.x + box.width + APART_PX, y })),
-    past((box, { y }) => ({ x: box.x - width - APART_PX, y })),
-  ]
-  const distance = (place: Point) => Math.hypot(place.x - at.x, place.y - at.y)
-  return places.reduce((best, place) => (distance(place) < distance(best) ? place : best))
 }
 
 export function movedNote(note: CanvasNote, by: Point): CanvasNote {

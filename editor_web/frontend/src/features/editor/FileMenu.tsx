@@ -1,6 +1,15 @@
 /** What can be done with the behavior as a file: versions, another name, a copy, a picture, deleting. */
 import { ActionIcon, Menu } from '@mantine/core'
-import { IconCopy, IconCursorText, IconDots, IconFileTypePng, IconFileTypeSvg, IconHistory, IconTrash } from '@tabler/icons-react'
+import {
+  IconCopy,
+  IconCursorText,
+  IconDots,
+  IconFileTypePdf,
+  IconFileTypePng,
+  IconFileTypeSvg,
+  IconHistory,
+  IconTrash,
+} from '@tabler/icons-react'
 import { exportPicture } from './exporting'
 import { openFileDialog } from './fileDialogs'
 
@@ -22,6 +31,9 @@ export function FileMenu({ mayEdit }: { mayEdit: boolean }) {
         </Menu.Item>
         <Menu.Item leftSection={<IconFileTypePng size={15} aria-hidden />} onClick={() => void exportPicture('png')}>
           Export as PNG
+        </Menu.Item>
+        <Menu.Item leftSection={<IconFileTypePdf size={15} aria-hidden />} onClick={() => void exportPicture('pdf')}>
+          Export as PDF
         </Menu.Item>
         <Menu.Divider />
         <Menu.Item disabled={!mayEdit} leftSection={<IconCursorText size={15} aria-hidden />} onClick={() => openFileDialog('rename')}>

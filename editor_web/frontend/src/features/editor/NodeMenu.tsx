@@ -17,7 +17,17 @@ const ONE = [
 ] as const
 const SEVERAL = [
   ['disable', 'replace'],
-  ['align-left', 'align-right', 'align-top', 'align-bottom', 'align-row', 'align-column', 'distribute-across', 'distribute-down'],
+  [
+    'layout-selected',
+    'align-left',
+    'align-right',
+    'align-top',
+    'align-bottom',
+    'align-row',
+    'align-column',
+    'distribute-across',
+    'distribute-down',
+  ],
   ['group', 'group-concurrency'],
   ['duplicate', 'copy', 'cut', 'remove'],
 ] as const
@@ -81,6 +91,7 @@ const WORDS: Readonly<Record<string, string>> = {
   open: 'Open or close in place',
   connect: 'Connect an outcome…',
   initial: 'Start with it',
+  'layout-selected': 'Auto-layout',
   replace: 'Replace by…',
   note: 'Note',
   alike: 'Select all that run the same',

@@ -1,7 +1,7 @@
 /** A behavior as one standing drawing, as the canvas shows it: for comparing versions and for files. */
 import { getSmoothStepPath, Position } from '@xyflow/react'
 import type { ReactNode } from 'react'
-import { moved, roundedPath } from '../../document/geometry'
+import { boundsOf, moved, roundedPath } from '../../document/geometry'
 import type { Marking } from '../../document/editing/changes'
 import { noteAt, noteId } from '../../document/editing/canvasNotes'
 import { portY } from '../../document/editing/measure'
@@ -163,14 +163,8 @@ function boxOf(boxes: ReadonlyMap<string, Box>, id: string): Box {
 }
 
 function around(boxes: readonly Box[], points: readonly Point[]): Box {
-  const corners = [...points, ...boxes, ...boxes.map((box) => ({ x: box.x + box.width, y: box.y + box.height }))]
-  if (corners.length === 0) return { x: 0, y: 0, width: 240, height: 80 }
-  const x = corners.reduce((least, point) => Math.min(least, point.x), Infinity) - MARGIN
-  const y = corners.reduce((least, point) => Math.min(least, point.y), Infinity) - MARGIN
-  return {
-    x,
-    y,
-    width: corners.reduce((most, point) => Math.max(most, point.x), -Infinity) + MARGIN - x,
-    height: corners.reduce((most, point) => Math.max(most, point.y), -Infinity) + MARGIN - y,
-  }
+  const all = [...boxes, ...points.map((point) => ({ ...point, width: 0, height: 0 }))]
+  if (all.length === 0) return { x: 0, y: 0, width: 240, height: 80 }
+  const { x, y, width, height } = boundsOf(all)
+  return { x: x - MARGIN, y: y - MARGIN, width: width + 2 * MARGIN, height: height + 2 * MARGIN }
 }

@@ -8,6 +8,7 @@ import {
   IconCopyPlus,
   IconCursorText,
   IconExternalLink,
+  IconHierarchy3,
   IconLogin2,
   IconNote,
   IconPlayerTrackNext,
@@ -23,6 +24,7 @@ import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from '
 import { toggleDisabled } from './disabled'
 import { openAddPalette, openConnectPalette } from './paletteRequests'
 import { openReferred } from './pageActions'
+import { layOutSelected } from './placing'
 import { writeNote } from './notes'
 import { toggleReference } from './references'
 import { editor, isOpenNow, rootOf, setEditor, useEditor } from './store'
@@ -136,6 +138,9 @@ function Several({ count }: { count: number }) {
       </Text>
       <Tool label="Group into a machine" command="group" onPress={() => void group('machine')}>
         <IconBoxMultiple size={16} />
+      </Tool>
+      <Tool label="Auto-layout of the selected nodes" command="layout-selected" onPress={() => void layOutSelected()}>
+        <IconHierarchy3 size={16} />
       </Tool>
     </>
   )

@@ -1,7 +1,7 @@
 /** The commands that put nodes elsewhere on the canvas. */
 import { nudge } from './actions'
 import type { Action } from './command'
-import { align, layOutAnew } from './placing'
+import { align, layOutAnew, layOutSelected } from './placing'
 
 const STEP = 20
 
@@ -15,6 +15,7 @@ function moving(x: number, y: number): Action {
 
 export const ARRANGING = {
   layout: { run: () => void layOutAnew() },
+  'layout-selected': { needs: 'nodes', run: () => void layOutSelected() },
   'align-left': aligning('left'),
   'align-right': aligning('right'),
   'align-bottom': aligning('bottom'),

@@ -12,13 +12,13 @@ import { DisabledForm } from './DisabledForm'
 import { EditHistory } from './EditHistory'
 import { Inspector } from './Inspector'
 import { NodeMenu } from './NodeMenu'
-import { align } from './placing'
+import { align, layOutSelected } from './placing'
 import { setEditor, useEditor } from './store'
 
 const GRASP = node('root/grasp', ['held', 'failed'], { state: 'test.Give', parameters: { speed: 0.2, force: 3 } })
 const PLACE = node('root/place', ['done'], { state: 'test.Take', parameters: { speed: 0.5 } })
 const INNER = machineNode('root/inner', 'one', [node('root/inner/one', ['done'])], [])
-const ROOT = machineNode('root', 'grasp', [GRASP, PLACE, INNER], [])
+const ROOT = machineNode('root', 'grasp', [GRASP, PLACE, INNER], [['grasp', 'held', 'place']])
 const BOX = { width: 100, height: 50 }
 
 function parameter(name: string): object {
@@ -69,6 +69,31 @@ it('aligns nodes without laying one on another', async () => {
   choose(['root/grasp', 'root/place'])
   await align('left')
   expect(sentEdits()[0]?.[0]).toMatchObject({ positions: { 'root/grasp': [10, 20], 'root/place': [10, 92] } })
+})
+
+it('lays out the selected nodes around where they are, in one step, and leaves the others where they are seen', async () => {
+  choose(['root/grasp', 'root/place'])
+  await layOutSelected(() => Promise.reject(new Error('a chain needs no engine')))
+  const history = useEditor.getState().history
+  expect([history.steps.length, history.steps.at(-1)?.label]).toEqual([2, 'Auto-layout of 2 nodes'])
+  const [[edit] = []] = sentEdits()
+  expect(sentEdits()).toHaveLength(1)
+  // Their middle is at 75, 50 before and after.
+  expect(edit).toEqual({ edit: 'set_positions', positions: { 'root/grasp': [-54, 25], 'root/place': [104, 25], 'root/inner': [400, 20] } })
+})
+
+it('keeps siblings that have no position yet where they are seen, when others are put elsewhere', async () => {
+  openDocument({ ...ROOT, children: ROOT.children.map((child) => (child === INNER ? child : { ...child, position: [10, 20] as const })) })
+  choose(['root/grasp', 'root/place'])
+  await align('column')
+  expect(sentEdits()[0]?.[0]).toMatchObject({ positions: { 'root/inner': [400, 20] } })
+})
+
+it('says what a selection needs to be laid out', async () => {
+  choose(['root/grasp', 'root/inner/one'])
+  await layOutSelected()
+  expect(sentEdits()).toEqual([])
+  expect(useEditor.getState().notice).toMatchObject({ tone: 'refused', message: 'select two nodes or more of one machine' })
 })
 
 it('sets a parameter that several nodes have in all of them, disables them, and writes a note on all', async () => {

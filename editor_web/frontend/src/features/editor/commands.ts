@@ -61,6 +61,7 @@ const ACTIONS: Readonly<Record<EditorCommandId, Action>> = {
   versions: { run: () => openFileDialog('versions') },
   svg: { run: () => void exportPicture('svg') },
   png: { run: () => void exportPicture('png') },
+  pdf: { run: () => void exportPicture('pdf') },
   problem: { run: goToProblem },
 
   add: { run: () => openAddPalette() },

@@ -1,9 +1,10 @@
-/** The whole behavior as a picture file, in the colours of the page: SVG, or PNG at twice the size. */
+/** The whole behavior as a picture file, in the colours of the page: SVG, PNG at twice the size, or PDF, which the server makes of the SVG. */
 import { createRoot } from 'react-dom/client'
 import { flushSync } from 'react-dom'
 import { expansionOf, rowLimitOf } from '../../document/editing/expansion'
 import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
+import { documents } from '../../api/documents'
 import { layOutByElk } from '../../components/elk'
 import { tokensOf } from '../../components/tokens'
 import { drawingOf } from './drawing'
@@ -15,12 +16,15 @@ const SCALE = 2
 /** No browser draws more on one canvas than so many pixels a side. */
 const LARGEST_PX = 8192
 
-export async function exportPicture(format: 'svg' | 'png'): Promise<void> {
+export type PictureFormat = 'svg' | 'png' | 'pdf'
+
+export async function exportPicture(format: PictureFormat): Promise<void> {
   try {
+    const { id } = editor()
     const svg = await pictureOfDraft()
-    const name = `${fileTitle(editor().id)}.${format}`
+    const name = `${fileTitle(id)}.${format}`
     if (format === 'svg') download(name, new Blob([svg], { type: 'image/svg+xml' }))
-    else download(name, await pngOf(svg))
+    else download(name, await (format === 'png' ? pngOf(svg) : documents.pdf(id, svg)))
     showEditorNotice(`Exported ${name}`)
   } catch (error) {
     showEditorRefusal('Export', wordsOf(error))

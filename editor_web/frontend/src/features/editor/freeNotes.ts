@@ -1,11 +1,11 @@
 /** Free notes of the canvas: which one has the keyboard, which one is being written, and changing them. */
 import { isForeign } from '../../document/editing/model'
 import {
-  freePlace,
   isSameNote,
   movedNote,
   newNote,
   noteAt,
+  placeForNote,
   resizedNote,
   setCanvasNote,
   type CanvasNote,
@@ -45,7 +45,7 @@ export function addFreeNote(): void {
     return
   }
   const { boxes, outer, origins } = canvasBoxes()
-  const place = freePlace(
+  const place = placeForNote(
     useFreeNotes.getState().middle(),
     [...boxes].filter(([id]) => outer.has(id)).map(([, box]) => box),
   )

@@ -1,14 +1,21 @@
 /** Where nodes are on the canvas: put, kept, in line, or laid out by itself again. */
+import { layOutByElk } from '../../components/elk'
+import { isNoteOn } from '../../document/editing/canvasNotes'
 import { corner } from '../../document/editing/edits'
 import type { Corner } from '../../document/editing/edits'
+import { rowLimitOf } from '../../document/editing/expansion'
 import { isMachine, isTreePart, nodeOf, type EditNode } from '../../document/editing/model'
 import { aligned, type Alignment } from '../../document/editing/neighbors'
-import type { Box } from '../../document/geometry'
+import { layOutChosen } from '../../document/editing/selectionLayout'
+import type { LayoutCall } from '../../document/elkGraph'
+import type { Box, Point } from '../../document/geometry'
 import { nameOfPath, parentPath } from '../../document/path'
 import { perform } from './apply'
 import { canvasBoxes } from './canvasPositions'
-import { outermost } from './selected'
-import { rootOf, editor, scopeOf, showEditorNotice, showEditorRefusal } from './store'
+import { outermost, own } from './selected'
+import { rootOf, editor, isOpenNow, scopeOf, showEditorNotice, showEditorRefusal } from './store'
+
+const LAYOUT = 'Auto-layout'
 
 /** Forget where nodes were put: the container that fills the canvas is laid out by itself again. */
 export async function layOutAnew(): Promise<void> {
@@ -18,21 +25,21 @@ export async function layOutAnew(): Promise<void> {
     showEditorNotice('It is laid out already')
     return
   }
-  await perform('Auto-layout', [{ edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) }])
+  await perform(LAYOUT, [{ edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) }])
 }
 
 function positionedBelow(node: EditNode): readonly string[] {
   return node.children.flatMap((child) => [...(child.position ? [child.path] : []), ...positionedBelow(child)])
 }
 
-/** The children of a machine where they are seen now; none where they have positions already, or it is laid out otherwise. */
+/** The children of a machine that have no positions yet, where they are seen now; none where it is laid out otherwise. */
 export function seenPositions(parent: EditNode): Record<string, Corner> {
-  if (!isMachine(parent.kind) || parent.children.some((child) => child.position !== null)) return {}
+  if (!isMachine(parent.kind)) return {}
   const { boxes, origins } = canvasBoxes()
   const origin = origins.get(parent.path) ?? { x: 0, y: 0 }
   return Object.fromEntries(
     parent.children.flatMap((child): [string, Corner][] => {
-      const box = boxes.get(child.path)
+      const box = child.position === null && boxes.get(child.path)
       return box ? [[child.path, corner(box.x - origin.x, box.y - origin.y)]] : []
     }),
   )
@@ -42,7 +49,7 @@ export function seenPositions(parent: EditNode): Record<string, Corner> {
  * Put nodes where they were dragged to; false where they are not there.
  * The first one that is moved pins its siblings, which stay where they are seen.
  */
-export async function place(moved: ReadonlyMap<string, { x: number; y: number }>): Promise<boolean> {
+export async function place(moved: ReadonlyMap<string, Point>, words = wordsFor(moved)): Promise<boolean> {
   const root = rootOf(editor())
   const { origins } = canvasBoxes()
   const positions: Record<string, Corner> = {}
@@ -54,8 +61,42 @@ export async function place(moved: ReadonlyMap<string, { x: number; y: number }>
     positions[path] = corner(at.x - origin.x, at.y - origin.y)
   }
   if (Object.keys(positions).length === 0) return false
-  const words = moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`
   return (await perform(words, [{ edit: 'set_positions', positions }])) !== undefined
+}
+
+function wordsFor(moved: ReadonlyMap<string, Point>): string {
+  return moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`
+}
+
+/** Lay out the selected nodes of each machine among themselves, around where they are; what is not selected stays. */
+export async function layOutSelected(call: LayoutCall = layOutByElk): Promise<void> {
+  const { id } = editor()
+  const root = rootOf(editor())
+  const paths = own(outermost(), LAYOUT)
+  const scope = scopeOf(editor())
+  if (!root || !scope || paths.length === 0) return
+  const parents = [...new Set(paths.map(parentPath))].flatMap((path) => nodeOf(root, path) ?? [])
+  const machines = parents.filter((each) => isMachine(each.kind) && paths.filter((path) => parentPath(path) === each.path).length > 1)
+  if (machines.length === 0) {
+    showEditorRefusal(LAYOUT, 'select two nodes or more of one machine', 'Elsewhere nodes are laid out by themselves.')
+    return
+  }
+  const rowLimit = rowLimitOf(scope, (path) => isOpenNow(editor(), path))
+  const corners = await Promise.all(machines.map((machine) => layOutChosen(machine, new Set(paths), seenIn(machine), { rowLimit, call })))
+  const moved = new Map(corners.flatMap((each) => [...each]))
+  if (editor().id !== id) return
+  if (moved.size === 0) showEditorNotice('It is laid out already')
+  else await place(moved, `${LAYOUT} of ${moved.size} nodes`)
+}
+
+/** What is drawn on the canvas of a machine: its children, and its free notes. */
+function seenIn({ path, children }: EditNode): { readonly boxes: ReadonlyMap<string, Box>; readonly others: readonly Box[] } {
+  const { boxes } = canvasBoxes()
+  const drawn = children.flatMap((child): [string, Box][] => {
+    const box = boxes.get(child.path)
+    return box ? [[child.path, box]] : []
+  })
+  return { boxes: new Map(drawn), others: [...boxes].filter(([id]) => isNoteOn(path, id)).map(([, box]) => box) }
 }
 
 export async function align(how: Alignment): Promise<void> {

@@ -6,11 +6,12 @@ import re
 import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import hatch_build
-from engine.editing.picture import PROGRAM
+from engine.editing.pictures import PROGRAM
 from tests.engine.cli.command import flexcell
 
 BEHAVIOR = Path(__file__).parents[5] / "behaviors" / "test_cylinder" / "test_cylinder.yaml"
@@ -61,8 +62,58 @@ def test_a_png_has_twice_as_many_pixels_and_other_names_are_refused(tmp_path: Pa
     assert made[:8] == b"\x89PNG\r\n\x1a\n"
     width = float(ET.fromstring((tmp_path / "a.svg").read_text()).attrib["width"])
     assert int.from_bytes(made[16:20]) == pytest.approx(2 * width, abs=2)
-    said = flexcell("picture", BEHAVIOR, "-o", "a.pdf", cwd=tmp_path)
-    assert (said.code, said.err) == (2, "flexcell: a.pdf is no picture (give a name that ends in .svg or .png)\n")
+    said = flexcell("picture", BEHAVIOR, "-o", "a.gif", cwd=tmp_path)
+    assert (said.code, said.err) == (2, "flexcell: a.gif is no picture (give a name that ends in .svg, .png or .pdf)\n")
+
+
+@pytest.mark.parametrize("theme", [[], ["--dark"]])
+def test_a_pdf_is_one_page_with_the_texts_and_colours_of_the_drawing(tmp_path: Path, theme: list[str]) -> None:
+    pytest.importorskip("quickjs", reason="the JavaScript engine of the extra `picture` is not installed")
+    pytest.importorskip("reportlab", reason="what writes PDF is not installed")
+    pdfium: Any = pytest.importorskip("pypdfium2", reason="what reads PDF is not installed")
+    for name in ("a.svg", "a.pdf"):
+        said = flexcell("picture", BEHAVIOR, "-o", name, *theme, cwd=tmp_path)
+        assert said.code == 0, said.err
+    svg = ET.fromstring((tmp_path / "a.svg").read_text())
+    document = pdfium.PdfDocument(tmp_path / "a.pdf")
+    assert len(document) == 1
+    page = document[0]
+    size = [float(svg.attrib[side]) for side in ("width", "height")]
+    # A pixel is the 96th part of an inch, a point the 72nd.
+    assert page.get_size() == pytest.approx([0.75 * each for each in size])
+    words = [
+        each for text in svg.iter(f"{SVG}text") for each in "".join(f" {part}" for part in text.itertext()).split()
+    ]
+    assert sorted(page.get_textpage().get_text_bounded().split()) == sorted(words)
+    left, top, *_ = map(float, svg.attrib["viewBox"].split())
+    picture = page.render(scale=96 / 72).to_pil().convert("RGB")
+    cards = [each for each in svg.iter(f"{SVG}rect") if "fill:#" in each.attrib["style"] and each.get("rx") == "10"]
+    assert len(cards) > 20
+    for card in cards:
+        x, y, height = (float(card.attrib[name]) for name in ("x", "y", "height"))
+        seen = picture.getpixel((round(x - left + 6), round(y - top + height / 3)))
+        assert "#{:02x}{:02x}{:02x}".format(*seen) == card.attrib["style"][len("fill:") :][:7]
+
+
+def test_containers_are_opened_by_name_and_by_level(tmp_path: Path) -> None:
+    pytest.importorskip("quickjs", reason="the JavaScript engine of the extra `picture` is not installed")
+
+    def names(*options: str) -> set[str]:
+        said = flexcell("picture", BEHAVIOR, "-o", "a.svg", *options, cwd=tmp_path)
+        assert said.code == 0, said.err
+        return {each.split()[0] for each in drawn((tmp_path / "a.svg").read_text()) if each}
+
+    closed, one = names("--depth", "0"), names("--depth", "0", "--open", "root/pick")
+    assert {"pick", "water"} <= closed
+    assert one - closed >= {"grip", "back_off"}
+    assert "rinse" not in one
+    assert {"grip", "rinse"} <= names("--depth", "1")
+    said = flexcell("picture", BEHAVIOR, "-o", "b.svg", "--open", "root/pik", cwd=tmp_path)
+    assert said.code == 2
+    assert said.err.startswith("flexcell: --open root/pik: there is no such container (did you mean root/pick")
+    said = flexcell("picture", BEHAVIOR, "-o", "b.svg", "--all", "--depth", "1", cwd=tmp_path)
+    assert (said.code, said.err) == (2, "flexcell: --all and --depth say different things (give one of them)\n")
+    assert not (tmp_path / "b.svg").exists()
 
 
 def test_a_document_that_cannot_be_read_is_said(tmp_path: Path) -> None:

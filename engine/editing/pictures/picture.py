@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -12,11 +11,12 @@ from typing import Any, Literal, cast
 import msgspec
 
 from engine.editing.analysis.document_graph import DocumentInfo, DocumentNode
+from engine.editing.pictures.fonts import INSTALL_FONT, NO_FONT
+from engine.editing.pictures.picture_package import picture_package
 from engine.errors import FlexcellError
 
 PROGRAM = "static/picture.js"
 """The file of the page that draws, relative to the package of the page."""
-_INSTALL = "pip install 'flexcell[picture]'"
 _MEMORY_BYTES = 2 << 30
 _STACK_BYTES = 64 << 20
 _LONGEST_PX = 16_000
@@ -31,12 +31,18 @@ flexcell.pictureFile(%s).then((svg) => { made = svg }, (error) => { failed = Str
 
 
 class PictureRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """What the program is asked for; `all` opens every container, not only those that the canvas opens by itself."""
+    """What the program is asked for: which containers show their inside.
+
+    Those that the canvas opens by itself, or with `depth` those of so many levels; with `all` every one. Those in
+    `open` and around them are open in any case.
+    """
 
     graph: DocumentNode
     document: DocumentInfo
     scheme: Literal["light", "dark"] = "light"
     all: bool = False
+    depth: int | None = None
+    open: tuple[str, ...] = ()
 
 
 def draw_svg(request: PictureRequest) -> str:
@@ -45,7 +51,7 @@ def draw_svg(request: PictureRequest) -> str:
     Raises:
         FlexcellError: the JavaScript engine is not installed, the page is not built, or the drawing failed.
     """
-    engine: Any = _module("quickjs", "the JavaScript engine that draws")
+    engine: Any = picture_package("quickjs", "the JavaScript engine that draws")
     context = engine.Context()
     context.set_memory_limit(_MEMORY_BYTES)
     context.set_max_stack_size(_STACK_BYTES)
@@ -68,12 +74,9 @@ def png_of(svg: str) -> bytes:
     Raises:
         FlexcellError: what draws pixels is not installed, or there is no font on this machine.
     """
-    drawing: Any = _module("resvg_py", "what draws pixels")
+    drawing: Any = picture_package("resvg_py", "what draws pixels")
     if not _has_fonts(drawing, svg):
-        raise FlexcellError(
-            "there is no font on this machine to write names with",
-            hint="install one, such as `fonts-dejavu-core`, or write an SVG",
-        )
+        raise FlexcellError(NO_FONT, hint=INSTALL_FONT)
     longest = max(float(each) for each in _size(svg))
     return bytes(drawing.svg_to_bytes(svg_string=svg, zoom=min(_SCALE, _LONGEST_PX / longest)))
 
@@ -92,13 +95,6 @@ def _has_fonts(drawing: Any, svg: str) -> bool:
 def _size(svg: str) -> tuple[str, str]:
     width, height = (re.search(rf'<svg[^>]* {name}="([^"]+)"', svg) for name in ("width", "height"))
     return (width.group(1), height.group(1)) if width is not None and height is not None else ("1", "1")
-
-
-def _module(name: str, what: str) -> Any:
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise FlexcellError(f"{what}, `{name}`, is not installed", hint=_INSTALL) from error
 
 
 def _program() -> Path:
