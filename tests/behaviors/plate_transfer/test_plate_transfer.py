@@ -42,6 +42,19 @@ def test_between_the_pedestals_the_plate_stays_level_and_on_a_straight_line(tmp_
     assert max(2 * math.hypot(*pose.xyzw[:2]) for pose in carried) < math.radians(1.0)
 
 
+@pytest.mark.parametrize(("deeper_m", "ends"), [(0.001, "finished"), (0.0, "missed")])
+def test_a_plate_under_the_place_that_was_taught_is_picked_at_the_second_attempt(
+    tmp_path: Path, deeper_m: float, ends: str
+) -> None:
+    """1.5 mm under it, beside the errors of the arm: out of the magnet's reach, and for good if the arm goes as low."""
+    taught = changed_cell(CELL, tmp_path, entries=lambda text: text.replace("-0.7, 0.708]", "-0.7, 0.7095]"))
+    done = Application(behavior=BEHAVIOR, cell=taught, parameters={"deeper_m": deeper_m})
+    result = done.run(tmp_path)
+    assert result.outcome == ends
+    attempts = [left.rpartition(" ")[2] for left in done.left if left.startswith("root/pick/attract ")]
+    assert attempts == ["missed", "held" if deeper_m else "missed"]
+
+
 def test_a_missing_plate_is_given_up_with_the_magnet_as_the_cause(tmp_path: Path) -> None:
     """After two attempts; the magnet is off and the arm at home."""
     tried = Application(behavior=BEHAVIOR, cell=changed_cell(CELL, tmp_path, cell=without_parts))
