@@ -57,7 +57,7 @@ class ContactCounter:
         """Count the contacts of the step just done."""
         now: dict[tuple[int, int, int], float] = {}
         geoms = self._physics.contact_geoms()
-        for index in np.flatnonzero(self._counted[geoms[:, 0], geoms[:, 1]]).tolist():
+        for index in self._counted[geoms[:, 0], geoms[:, 1]].nonzero()[0].tolist():
             if self._physics.contact_depth_m(index) < 0.0:
                 continue
             pair = self._pair(geoms[index].tolist())

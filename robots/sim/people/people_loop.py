@@ -29,6 +29,11 @@ class PeopleLoop:
         self._indices = cell.people
         self._people = [PersonMotion(person, step_s=step_s) for person in cell.scene.people]
         self._by_name = {person.name: row for row, person in enumerate(cell.people)}
+        if self._people:
+            # It loads numba, and most cells have no people.
+            from robots.sim.physics import limb_kernels
+
+            self._move = limb_kernels.move
         self._all_qpos = _joined([indices.qpos for indices in cell.people])
         self._all_dof = _joined([indices.dof for indices in cell.people])
         # Those of all people, and the rows of each.
@@ -56,8 +61,8 @@ class PeopleLoop:
         for row, person in enumerate(self._people):
             before, qpos, qvel = person.pose, self._qpos[row], self._qvel[row]
             if person.step():
-                qpos[:] = _positions(before)
-                qvel[:] = _velocities(before, person.pose, self._step_s)
+                after = person.pose
+                self._move(before.xyz, before.wxyz, after.xyz, after.wxyz, self._step_s, qpos, qvel)
         if any(yielding.active for yielding in self._yielding):
             for row in range(len(self._people)):
                 self._put(row)
@@ -140,14 +145,3 @@ def _joined(places: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
 
 def _positions(pose: LimbPose) -> Array:
     return np.hstack((pose.xyz, pose.wxyz)).reshape(-1)
-
-
-def _velocities(before: LimbPose, after: LimbPose, step_s: float) -> Array:
-    """Return the velocities, (18,), between two poses: linear of the origin in the world, angular in the body frame."""
-    b, a = before.wxyz, after.wxyz
-    # conjugate(b) * a, vector part; over one step the rotation is twice that, along the shorter arc.
-    scalar = (b * a).sum(axis=1)
-    crossed = b[:, [2, 3, 1]] * a[:, [3, 1, 2]] - b[:, [3, 1, 2]] * a[:, [2, 3, 1]]
-    turn = b[:, :1] * a[:, 1:] - a[:, :1] * b[:, 1:] - crossed
-    turn *= np.where(scalar < 0.0, -2.0, 2.0)[:, None]
-    return np.hstack((after.xyz - before.xyz, turn)).reshape(-1) / step_s
