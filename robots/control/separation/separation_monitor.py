@@ -42,7 +42,7 @@ class SeparationMonitor:
         self._table: tuple[Array, Array, Array] | None = None
         self._share = 0.0
         self._has_moved = False
-        self._permitted_after_s = math.nan
+        self._permitted_after_s: float = math.nan
         """The reaction time for which `permitted` was computed from the measurement, not a number for none."""
         self.permitted = PermittedSpeed(share=0.0, speed_m_s=0.0)
         """What is permitted now."""

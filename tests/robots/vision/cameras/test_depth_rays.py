@@ -24,6 +24,9 @@ from tests.robots.vision.watched_cell import BOX, FRONT, PANDA, SIDE, block, cam
 AMONG = DepthCamera(at=(0.2, 0.35, 0.6), look_at=(0.4, -0.2, 0.3), size_px=(160, 120))
 PART = PartBody(name="ball", shape="sphere", size_m=(0.2,), mass_kg=0.1, pose=Pose(xyz=(0.6, 0.3, 0.4)))
 
+# Long enough to pass beside a camera among the bodies, from before it to behind it.
+BEAM = PartBody(name="beam", shape="box", size_m=(3.0, 0.1, 0.1), mass_kg=0.1, pose=Pose(xyz=(0.3, 0.1, 0.5)))
+
 
 def _renderer(what: SimScene, *seen_by: CameraSpec) -> tuple[PhysicsCopy, RayDepthRenderer]:
     cell = PhysicsCopy(what)
@@ -49,7 +52,7 @@ def _cast_all(cell: PhysicsCopy, renderer: RayDepthRenderer, camera: CameraSpec)
 @pytest.mark.parametrize("where", [FRONT, SIDE, AMONG])
 def test_images_while_everything_moves_are_those_of_all_rays(where: DepthCamera) -> None:
     (camera,) = cameras(front=where)
-    what = scene(block((0.5, 0.0, 0.2), (0.2, 0.2, 0.4)), arms=(PANDA,), parts=(PART,))
+    what = scene(block((0.5, 0.0, 0.2), (0.2, 0.2, 0.4)), arms=(PANDA,), parts=(PART, BEAM))
     cell, renderer = _renderer(what, camera)
     random, seen = np.random.default_rng(7), set[bytes]()
     for _ in range(30):
