@@ -43,7 +43,7 @@ def test_the_silhouette_of_an_arm_is_that_of_all_rays(seed: int) -> None:
     camera, random = _camera(), np.random.default_rng(seed)
     view = ExpectedView(camera, camera.intrinsics, ())
     away = random.uniform(-1.5, 2.5, (30, 3)) if seed % 2 else random.normal((0.3, 0.1, -0.1), 0.4, (30, 3))
-    radii = np.minimum(random.uniform(0.05, 0.35, 30), np.linalg.norm(away, axis=1) - 0.05).clip(0.01)
+    radii = np.minimum(random.uniform(0.05, 0.35, 30), np.linalg.norm(away, axis=1) - 0.3).clip(0.01)
     balls = np.column_stack((away + camera.pose.xyz, radii))
     depth = np.full((48, 64), BACKGROUND_M, dtype=np.float32)
     silhouette = view.compare(depth, balls).silhouette
