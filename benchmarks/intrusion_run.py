@@ -20,12 +20,14 @@ from engine.messages import JointState
 from engine.messages.separation import SeparationState
 from engine.skills.collision_options import CollisionOptions
 from engine.skills.motion import JointTrapVel
-from engine.skills.people import ContactCount, CountContacts, Reach, Withdraw
+from engine.skills.people import ContactCount, Reach, Withdraw
 from engine.skills.planning import Adaptation, FreeMotionFeedback, FreeMotionResult, MotionTarget, MoveFree, PlanOptions
-from robots.port import Array
+from robots.port import ArmSample, Array
 from robots.scene.scene_builder import build_scene
+from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.cell_model import CellModel, build_cell
 from robots.sim.physics.physics import mujoco
+from robots.sim.world.sim_world import SimWorld
 
 MARGIN_M = 0.03
 WAITS_S = 4.0
@@ -71,6 +73,8 @@ class IntrudedCell:
         self, cell: OpenCell, *, arm: str, people: tuple[str, ...], speed: float, body_speeds: BodySpeeds
     ) -> None:
         self.bus: SkillBus = cell.bus
+        assert isinstance(cell.world, SimWorld)
+        self._world = cell.world
         self.arm = arm
         self.body_speeds = body_speeds
         self._people = people
@@ -111,7 +115,7 @@ class IntrudedCell:
 
     async def intruded(self, undisturbed: UndisturbedMotion, intrusion: Intrusion, *, adapts: bool) -> IntrusionResult:
         """Move along a path, monitoring it or not, while the hand gets into it; the hand is back at the end."""
-        before = await self._count()
+        before = self._count(self._world.measured())
         handle = self._start(undisturbed, adapts=adapts)
         await self._until_it_moves(handle)
         started_s = self.bus.clock.now_s()
@@ -140,7 +144,7 @@ class IntrudedCell:
         finally:
             watching.cancel()
             await asyncio.wait((watching,))
-        after = await self._count()
+        after = self._count(self._world.measured())
         return IntrusionResult(
             **ended,
             duration_s=duration_s,
@@ -203,9 +207,9 @@ class IntrudedCell:
         """Return the speed of the fastest joint."""
         return _fastest_rad_s(self._state())
 
-    async def _count(self) -> ContactCount:
+    def _count(self, snapshot: SimSnapshot) -> ContactCount:
         """Return the counts of all people together."""
-        counts = [await self.bus.call(CountContacts(person=person), to="cell") for person in self._people]
+        counts = [snapshot.person(person).count for person in self._people]
         return ContactCount(
             contacts=sum(count.contacts for count in counts),
             touching_s=sum(count.touching_s for count in counts),
@@ -221,9 +225,10 @@ class IntrudedCell:
         assert state is not None
         return state
 
-    async def look(self) -> tuple[JointState, ContactCount]:
+    def look(self) -> tuple[ArmSample, ContactCount]:
         """Return the state of the arm and the count of contacts."""
-        return self._state(), await self._count()
+        snapshot = self._world.measured()
+        return snapshot.arm(self.arm), self._count(snapshot)
 
 
 class BodySpeeds:
@@ -234,7 +239,7 @@ class BodySpeeds:
         (self._arm,) = cell.arms
         self._numbers = {cell.body_names[body]: body for body in self._arm.bodies}
 
-    def fastest_m_s(self, state: JointState, bodies: Iterable[str]) -> float:
+    def fastest_m_s(self, state: ArmSample, bodies: Iterable[str]) -> float:
         """Return the speed of the fastest of these bodies at its centre of mass; 0 where none is of the arm."""
         model, data = self._model, self._data
         data.qpos[self._arm.qpos] = state.position_rad
@@ -265,10 +270,10 @@ class _Watch:
 
     async def run(self) -> None:
         """Look every 10 ms, until cancelled."""
-        untouched, _ = await self._cell.look()
+        untouched, _ = self._cell.look()
         while True:
             await self._cell.bus.clock.sleep(_LOOK_S)
-            state, count = await self._cell.look()
+            state, count = self._cell.look()
             started = count.contacts - self._count.contacts
             if started > 0:
                 self.in_motion += started * (_fastest_rad_s(untouched) > _MOVES_RAD_S)
@@ -279,8 +284,8 @@ class _Watch:
             self._count = count
 
 
-def _fastest_rad_s(state: JointState) -> float:
-    return max(map(abs, state.velocity_rad_s))
+def _fastest_rad_s(state: ArmSample | JointState) -> float:
+    return float(np.abs(state.velocity_rad_s).max())
 
 
 def _so_far(feedback: object, end: str) -> dict[str, Any]:

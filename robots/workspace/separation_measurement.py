@@ -56,11 +56,15 @@ def nearest_body(
     """
     if not len(grid_points):
         return NearestBody()
+    # Imported here: it loads compiled code.
+    from robots.workspace.separation_kernels import nearest_point
+
     nearest = NearestBody()
+    points = np.ascontiguousarray(grid_points)
     for link, spheres in balls.items():
-        apart = _squares(grid_points, spheres[:, :3])
-        gaps = np.sqrt(np.maximum(apart, 0.0)) - spheres[:, 3]
-        nearest = _nearer(nearest, gaps.min(axis=1), f"{arm}/{link}", grid_points)
+        gap_m, point, _ = nearest_point(points, np.ascontiguousarray(spheres), nearest.distance_m)
+        if point >= 0:
+            nearest = _found(gap_m, f"{arm}/{link}", points[point])
     for part, link in held:
         pose = link.then(RigidTransform.from_pose(part.pose))
         for solid in part.solids:
@@ -107,16 +111,12 @@ def held_reach_m(part: AttachedPart) -> float:
 
 def _nearer(nearest: NearestBody, gaps: Array, body: str, points: Array) -> NearestBody:
     first = int(gaps.argmin())
-    if gaps[first] >= nearest.distance_m:
-        return nearest
-    x, y, z = points[first].tolist()
-    return NearestBody(distance_m=float(gaps[first]), body=body, at_m=(x, y, z))
+    return nearest if gaps[first] >= nearest.distance_m else _found(float(gaps[first]), body, points[first])
 
 
-def _squares(points: Array, centres: Array) -> Array:
-    """Return the squared distances, (points, centres)."""
-    squares = (points**2).sum(axis=1)[:, None] + (centres**2).sum(axis=1)[None, :]
-    return squares - 2.0 * points @ centres.T
+def _found(distance_m: float, body: str, point: Array) -> NearestBody:
+    x, y, z = point.tolist()
+    return NearestBody(distance_m=distance_m, body=body, at_m=(x, y, z))
 
 
 def _from_segment(points: Array, end: Array) -> Array:

@@ -22,12 +22,10 @@ class WorldPoseReader:
     def __call__(self) -> MeasuredPoses:
         """Return the measured arms, tools and parts."""
         snapshot, summary = self._world.measured(), self._world.host.summary
-        xyz, xyzw = snapshot.frames()
         tools = {arm.name: arm for arm in summary.arms}
-        row = {name: index for index, name in enumerate(summary.frames)}
 
         def frame(name: str) -> RigidTransform:
-            return RigidTransform.of(xyz[row[name]], xyzw[row[name]])
+            return RigidTransform.of(*snapshot.frame(name))
 
         def link(arm: str, name: str) -> RigidTransform:
             return frame(f"{arm}/{name}")

@@ -42,6 +42,8 @@ class SeparationMonitor:
         self._table: tuple[Array, Array, Array] | None = None
         self._share = 0.0
         self._has_moved = False
+        self._permitted_after_s: float = math.nan
+        """The reaction time for which `permitted` was computed from the measurement, not a number for none."""
         self.permitted = PermittedSpeed(share=0.0, speed_m_s=0.0)
         """What is permitted now."""
 
@@ -49,7 +51,7 @@ class SeparationMonitor:
         """Take a measurement."""
         if self._measured is None or measured.extents_m != self._measured.extents_m:
             self._table = None
-        self._measured, self._since_s = measured, 0.0
+        self._measured, self._since_s, self._permitted_after_s = measured, 0.0, math.nan
 
     def forget(self) -> None:
         """Drop the measurement and the motion: the world was restored to another state."""
@@ -83,10 +85,12 @@ class SeparationMonitor:
         if measured is None:
             self.permitted = PermittedSpeed(share=0.0, speed_m_s=0.0)
             return 0.0
-        if self._table is None:
-            self._table = self._new_table(measured)
-        speed_m_s, stop_s, stop_m = self._table
         reaction_s = max(rule.reaction_s, measured.age_s + self._since_s + rule.delay_s)
+        if self._table is None:
+            self._table, self._permitted_after_s = self._new_table(measured), math.nan
+        elif reaction_s == self._permitted_after_s:
+            return self.permitted.share
+        speed_m_s, stop_s, stop_m = self._table
         required_m = protective_distance_m(
             rule, reaction_s=reaction_s, speed_m_s=speed_m_s, stop_s=stop_s, stop_m=stop_m
         )
@@ -100,6 +104,7 @@ class SeparationMonitor:
         self.permitted = PermittedSpeed(
             share=share, speed_m_s=share * float(speed_m_s[-1]), protective_m=float(required_m[-1])
         )
+        self._permitted_after_s = reaction_s
         return share
 
     def _new_table(self, measured: MeasuredSeparation) -> tuple[Array, Array, Array]:

@@ -95,6 +95,7 @@ class SnapshotLayout:
             at = held + 1
         self.arms = arms
         frames = len(summary.frames)
+        self.frame_rows = {name: row for row, name in enumerate(summary.frames)}
         self.positions = slice(at, at + 3 * frames)
         self.quaternions = slice(at + 3 * frames, at + 7 * frames)
         at += 7 * frames
@@ -175,6 +176,13 @@ class SimSnapshot:
         """Progress of a tool's motion; None if the tool does not execute this motion."""
         fields = self._values[self._layout.arms[name].tool]
         return float(fields[1]) if fields[0] == motion else None
+
+    def frame(self, name: str) -> tuple[Array, Array]:
+        """Position (3,) and quaternion x y z w (4,) of a frame of the summary."""
+        row = self._layout.frame_rows[name]
+        xyz = self._values[self._layout.positions][3 * row : 3 * row + 3]
+        wxyz = self._values[self._layout.quaternions][4 * row : 4 * row + 4]
+        return xyz, wxyz[[1, 2, 3, 0]]
 
     def frames(self) -> tuple[tuple[Vector3, ...], tuple[Quaternion, ...]]:
         """Positions and quaternions x y z w of all frames of the summary, in its order."""

@@ -48,17 +48,16 @@ class ContactCounter:
         self._geom_body = physics.geom_body
         self._rows = rows
         self._touching = False
-        self._is_person: NDArray[np.bool_] = np.array([body in rows for body in physics.geom_body], dtype=np.bool_)
-        self._is_fixed: NDArray[np.bool_] = np.array([body in fixed for body in physics.geom_body], dtype=np.bool_)
+        is_person: NDArray[np.bool_] = np.array([body in rows for body in physics.geom_body], dtype=np.bool_)
+        is_fixed: NDArray[np.bool_] = np.array([body in fixed for body in physics.geom_body], dtype=np.bool_)
+        self._counted = (is_person[:, None] | is_person[None, :]) & ~(is_fixed[:, None] | is_fixed[None, :])
+        """Whether a contact of these two geometries counts, (n, n)."""
 
     def step(self, step_s: float) -> None:
         """Count the contacts of the step just done."""
-        geoms = self._physics.contact_geoms()
-        counts = self._is_person[geoms].any(axis=1) & ~self._is_fixed[geoms].any(axis=1) if len(geoms) else ()
-        hits = np.flatnonzero(counts)
         now: dict[tuple[int, int, int], float] = {}
-        for hit in hits:
-            index = int(hit)
+        geoms = self._physics.contact_geoms()
+        for index in self._counted[geoms[:, 0], geoms[:, 1]].nonzero()[0].tolist():
             if self._physics.contact_depth_m(index) < 0.0:
                 continue
             pair = self._pair(geoms[index].tolist())

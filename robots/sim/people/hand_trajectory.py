@@ -45,6 +45,12 @@ class HandTrajectory:
         share = max(time_s, 0.0) / self.duration_s
         return HandMotion(xyz=self._place(share), velocity=self._velocity(share))
 
+    def place(self, time_s: float) -> Array:
+        """Return the position after a time, as `at` does."""
+        if time_s >= self.duration_s or self.duration_s < _SMALL_S:
+            return self.goal
+        return self._place(max(time_s, 0.0) / self.duration_s)
+
     def places(self) -> Array:
         """Return points along the path, (m, 3), both ends included."""
         return self._place(_SHARES)

@@ -21,8 +21,8 @@ _STIFFNESS_N_M = LIMB_KG * _RETURN_RAD_S**2
 _DAMPING_NS_M = 2.0 * LIMB_KG * _RETURN_RAD_S
 # Below both of these an arm that nothing touches is where it should be.
 _BACK_M, _BACK_M_S = 1e-4, 1e-3
-# Rounding of the velocities of an arm that nothing touches.
-_NO_PUSH_M_S = 1e-9
+NO_PUSH_M_S = 1e-9
+"""Rounding of the velocities of an arm that nothing touches."""
 
 
 class Yielding:
@@ -34,16 +34,13 @@ class Yielding:
     def __init__(self) -> None:
         self.offset = np.zeros(3)
         self.velocity = np.zeros(3)
-
-    @property
-    def active(self) -> bool:
+        self.active = False
         """Whether the arm is displaced or moves relative to its motion."""
-        return bool(self.offset.any() or self.velocity.any())
 
     def step(self, pushed: Array, *, step_s: float) -> None:
         """Advance by a step in which contacts changed the velocities of the bodies by `pushed` (3, 3), m/s."""
         push = pushed.sum(axis=0)
-        touched = math.hypot(*push.tolist()) > _NO_PUSH_M_S
+        touched = math.hypot(*push.tolist()) > NO_PUSH_M_S
         if not touched and not self.active:
             return
         force = -_STIFFNESS_N_M * self.offset - _DAMPING_NS_M * self.velocity
@@ -53,7 +50,8 @@ class Yielding:
         self.velocity += push + force * (step_s / LIMB_KG)
         self.offset += self.velocity * step_s
         is_back = math.hypot(*self.offset.tolist()) < _BACK_M and math.hypot(*self.velocity.tolist()) < _BACK_M_S
-        if is_back and not touched:
+        self.active = touched or not is_back
+        if not self.active:
             self.offset[:] = 0.0
             self.velocity[:] = 0.0
 
@@ -64,3 +62,4 @@ class Yielding:
     def take_over(self, numbers: Array) -> None:
         """Continue from the numbers of `write`."""
         self.offset[:], self.velocity[:] = numbers[0:3], numbers[3:6]
+        self.active = bool(numbers[0:6].any())

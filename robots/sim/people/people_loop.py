@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.skills.people import Reach
 from robots.port import Array
 from robots.sim.people.contact_counter import ContactCounter
-from robots.sim.people.limb_yielding import YIELDING_FIELDS, Yielding
+from robots.sim.people.limb_yielding import NO_PUSH_M_S, YIELDING_FIELDS, Yielding
 from robots.sim.people.person_motion import MOTION_FIELDS, PersonMotion
 from robots.sim.people.person_report import report_size
 from robots.sim.physics.cell_model import CellModel
@@ -26,10 +29,23 @@ class PeopleLoop:
         self._indices = cell.people
         self._people = [PersonMotion(person, step_s=step_s) for person in cell.scene.people]
         self._by_name = {person.name: row for row, person in enumerate(cell.people)}
-        self._qpos = [_positions(person.pose) for person in self._people]
-        self._qvel = [np.zeros(6 * len(person.bodies)) for person in cell.people]
+        if self._people:
+            # It loads numba, and most cells have no people.
+            from robots.sim.physics import limb_kernels
+
+            self._move = limb_kernels.move
+        self._all_qpos = _joined([indices.qpos for indices in cell.people])
+        self._all_dof = _joined([indices.dof for indices in cell.people])
+        # Those of all people, and the rows of each.
+        self._together_qpos, self._together_qvel = np.zeros(len(self._all_qpos)), np.zeros(len(self._all_dof))
+        self._together_placed = np.zeros(len(self._all_dof))
+        count = max(1, len(cell.people))
+        self._qpos = list(self._together_qpos.reshape(count, -1))
+        self._qvel = list(self._together_qvel.reshape(count, -1))
+        self._placed = list(self._together_placed.reshape(count, -1))
+        for person, qpos in zip(self._people, self._qpos, strict=False):
+            qpos[:] = _positions(person.pose)
         self._yielding = [Yielding() for _ in cell.people]
-        self._placed = [qvel.copy() for qvel in self._qvel]
         body_count = len(cell.body_names)
         self._counter = _counter(cell, physics)
         self.report_size = report_size(len(cell.people), body_count=body_count)
@@ -45,18 +61,27 @@ class PeopleLoop:
         for row, person in enumerate(self._people):
             before, qpos, qvel = person.pose, self._qpos[row], self._qvel[row]
             if person.step():
-                qpos[:] = _positions(before)
-                qvel[:] = _velocities(before, person.pose, self._step_s)
-            self._put(row)
+                after = person.pose
+                self._move(before.xyz, before.wxyz, after.xyz, after.wxyz, self._step_s, qpos, qvel)
+        if any(yielding.active for yielding in self._yielding):
+            for row in range(len(self._people)):
+                self._put(row)
+        elif self._people:
+            self._together_placed[:] = self._together_qvel
+            self._physics.positions[self._all_qpos] = self._together_qpos
+            self._physics.velocities[self._all_dof] = self._together_qvel
 
     def count(self) -> None:
         """Count the contacts of the step just done, and let them push."""
         if self._counter is None:
             return
         self._counter.step(self._step_s)
-        for indices, placed, yielding in zip(self._indices, self._placed, self._yielding, strict=True):
-            pushed = self._physics.velocities[indices.dof] - placed
-            yielding.step(pushed.reshape(-1, 6)[:, :3], step_s=self._step_s)
+        pushed = self._physics.velocities[self._all_dof] - self._together_placed
+        linear = pushed.reshape(len(self._people), -1, 6)[:, :, :3]
+        if np.abs(linear).max() < NO_PUSH_M_S / 10.0 and not any(one.active for one in self._yielding):
+            return
+        for row, yielding in zip(linear, self._yielding, strict=True):
+            yielding.step(row, step_s=self._step_s)
 
     def write_report(self, values: Array) -> None:
         """Write the report for `robots.sim.people.person_report`, (`report_size`,)."""
@@ -114,16 +139,9 @@ def _counter(cell: CellModel, physics: Physics) -> ContactCounter | None:
     return ContactCounter(cell.people, physics, body_count=len(cell.body_names), fixed=fixed)
 
 
+def _joined(places: Sequence[NDArray[np.intp]]) -> NDArray[np.intp]:
+    return np.concatenate([np.zeros(0, dtype=np.intp), *places])
+
+
 def _positions(pose: LimbPose) -> Array:
     return np.hstack((pose.xyz, pose.wxyz)).reshape(-1)
-
-
-def _velocities(before: LimbPose, after: LimbPose, step_s: float) -> Array:
-    """Return the velocities, (18,), between two poses: linear of the origin in the world, angular in the body frame."""
-    b, a = before.wxyz, after.wxyz
-    # conjugate(b) * a, vector part; over one step the rotation is twice that, along the shorter arc.
-    scalar = (b * a).sum(axis=1)
-    crossed = b[:, [2, 3, 1]] * a[:, [3, 1, 2]] - b[:, [3, 1, 2]] * a[:, [2, 3, 1]]
-    turn = b[:, :1] * a[:, 1:] - a[:, :1] * b[:, 1:] - crossed
-    turn *= np.where(scalar < 0.0, -2.0, 2.0)[:, None]
-    return np.hstack((after.xyz - before.xyz, turn)).reshape(-1) / step_s

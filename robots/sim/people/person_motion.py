@@ -54,7 +54,7 @@ class PersonMotion:
         if self._stay_s >= 0.0 and self._steps * self._step_s >= self._trajectory.duration_s + self._stay_s:
             self._go(self._rest, speed_m_s=self._speed_m_s)
             self._stay_s = _FOR_EVER
-        hand = self.hand.xyz
+        hand = self._trajectory.place(self._steps * self._step_s)
         side = self._limb.carried_on(self._side, hand, step_s=self._step_s)
         before, self._side = self.pose, side
         self.pose = self._limb.pose(hand, side)

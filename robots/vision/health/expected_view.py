@@ -65,7 +65,10 @@ class ExpectedView:
         self._pixels = np.ix_(rows, columns)
         ahead = directions(intrinsics).reshape(height, width, 3)[self._pixels].reshape(-1, 3)
         self._length = np.linalg.norm(ahead, axis=1)
-        self._start = pose.xyz.copy()
+        self._start, self._turn = pose.xyz.copy(), np.ascontiguousarray(pose.rotation)
+        # Where the rays pass the plane 1 m ahead.
+        self._across: Array = (columns - intrinsics.cx_px) / intrinsics.fx_px
+        self._down: Array = (rows - intrinsics.cy_px) / intrinsics.fy_px
         self._along: Array = np.ascontiguousarray((ahead / self._length[:, None]) @ pose.rotation.T)
         self._fixture_m, self._cosine, owner = self._trace(fixtures)
         depth = self._fixture_m / self._length
@@ -77,7 +80,8 @@ class ExpectedView:
         along = depth[self._pixels].reshape(-1).astype(np.float64) * self._length
         measured = along > 0.0
         front, back = np.empty(len(along)), np.empty(len(along))
-        ball_spans(self._start, self._along, balls, _CORE_M, _BEYOND_M, front, back)
+        grid = self._across, self._down, self._along
+        ball_spans(self._start, self._turn, *grid, balls, _CORE_M, _BEYOND_M, front, back)
         fixtures = self._inside & measured & (front > self._fixture_m + _BESIDE_ARM_M)
         with np.errstate(invalid="ignore"):
             behind = (along - self._fixture_m) * self._cosine

@@ -19,8 +19,10 @@ from robots.vision.known_geometry import ArmConfiguration
 @dataclass(frozen=True, kw_only=True)
 class _Link:
     frame: int
-    balls: Array
-    """(k, 4), in the frame of the link"""
+    centres: Array
+    """Of its balls, (k, 3), in the frame of the link."""
+    rows: slice
+    """Its balls among those of all links."""
 
 
 class ArmBody:
@@ -29,6 +31,7 @@ class ArmBody:
     def __init__(self, placement: ArmPlacement) -> None:
         model = placement.robot()
         self._base = RigidTransform.from_pose(placement.base)
+        self._base_rotation = self._base.rotation
         self._name = placement.name
         self._joints = model.arm_joints
         self._solver: Any = whole_model(model)
@@ -40,18 +43,31 @@ class ArmBody:
             if number > 0
         }
         fitted = arm_spheres(model, ())
-        self._links = {
-            link: _Link(
+        self._links: dict[str, _Link] = {}
+        radii: list[Array] = []
+        first = 0
+        for link, spheres in zip(fitted.links, fitted.spheres, strict=True):
+            self._links[link] = _Link(
                 frame=int(self._solver.getFrameId(link, pin.FrameType.BODY)),
-                balls=_moved(fitted.frames[link][1].inverse(), spheres),
+                centres=_moved(fitted.frames[link][1].inverse(), spheres[:, :3]),
+                rows=slice(first, first + len(spheres)),
             )
-            for link, spheres in zip(fitted.links, fitted.spheres, strict=True)
-        }
+            radii.append(spheres[:, 3])
+            first += len(spheres)
+        self._radii = np.concatenate(radii)
         self.tool_link = model.tool_link
 
     def balls(self, posture: ArmConfiguration) -> Array:
         """Return the balls in the world, (k, 4); raises CellError for a posture of another arm."""
-        return np.vstack(list(self.link_balls(posture).values()))
+        self._move_to(posture)
+        balls = np.empty((len(self._radii), 4))
+        balls[:, 3] = self._radii
+        turn, base_xyz = self._base_rotation, self._base.xyz
+        for link in self._links.values():
+            found = self._data.oMf[link.frame]
+            rotation = turn @ found.rotation
+            balls[link.rows, :3] = link.centres @ rotation.T + (turn @ found.translation + base_xyz)
+        return balls
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -60,8 +76,8 @@ class ArmBody:
 
     def link_balls(self, posture: ArmConfiguration) -> dict[str, Array]:
         """Return the balls of each link in the world, (k, 4); raises CellError for a posture of another arm."""
-        self._move_to(posture)
-        return {name: _moved(self._at(link.frame), link.balls) for name, link in self._links.items()}
+        balls = self.balls(posture)
+        return {name: balls[link.rows] for name, link in self._links.items()}
 
     def link_pose(self, posture: ArmConfiguration, link: str) -> RigidTransform:
         """Return the pose of a link in the world; raises CellError for an unknown link."""
@@ -90,7 +106,5 @@ class ArmBody:
         return self._base.then(RigidTransform(xyz=np.array(found.translation), xyzw=xyzw))
 
 
-def _moved(pose: RigidTransform, balls: Array) -> Array:
-    moved = balls.copy()
-    moved[:, :3] = balls[:, :3] @ pose.rotation.T + pose.xyz
-    return moved
+def _moved(pose: RigidTransform, points: Array) -> Array:
+    return points @ pose.rotation.T + pose.xyz

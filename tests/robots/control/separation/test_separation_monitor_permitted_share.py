@@ -64,6 +64,17 @@ def test_a_measurement_without_anybody_permits_less_with_its_age_and_nothing_at_
     assert Motion().measure(math.inf, age_s=0.12 - STEP_S) == 1.0
 
 
+def test_each_measurement_counts_even_where_its_age_does_not() -> None:
+    """Younger than the regular reaction time, all ages permit the same."""
+    motion = Motion()
+    assert motion.measure(math.inf) == 1.0
+    assert motion.measure(AT_REST_M - 0.01) == 0.0
+    assert motion.share() == 0.0
+    assert motion.monitor.permitted.share == 0.0
+    assert motion.measure(AT_REST_M + 3.0, age_s=0.06) > 0.0
+    assert motion.monitor.permitted.share == 1.0
+
+
 def test_each_period_without_a_measurement_counts_with_its_length() -> None:
     motion = Motion()
     motion.permit(0.5)

@@ -8,10 +8,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from engine.skills.simulated_world import PushBody
 from robots.control.commanding.arm_commands import FollowTrajectory
 from robots.port import Array, JointTrajectory, Tolerance
 from robots.scene.sim_scene import PersonBody
-from robots.sim.commands.world_commands import RestoreWorld
+from robots.sim.commands.world_commands import PushSimBody, RestoreWorld
 from robots.sim.people.limb_yielding import GREATEST_PUSH_N
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, REST, SteppedPerson, with_anna
@@ -107,6 +108,18 @@ def test_an_arm_that_moves_into_a_person_pushes_her_away_with_a_bounded_force(ce
     assert max(displaced_m) > 0.07
     assert 20.0 < person.sample.count.greatest_force_n < 2.0 * GREATEST_PUSH_N
     assert np.abs(person.snapshot().arm("left").position_rad - goal).max() < 0.05
+
+
+def test_a_push_displaces_a_person_whom_nothing_touches_and_she_comes_back(cell: CellModel) -> None:
+    person = SteppedPerson(cell)
+    person.reach(OVER_TABLE)
+    person.run(1.5)
+    push = PushBody(body="anna/hand", force_n=(0.0, 0.0, 60.0), duration_s=0.1)
+    person.simulation.apply(PushSimBody(push=push))
+    person.run(0.1)
+    assert person.sample.hand.xyz[2] - OVER_TABLE[2] > 0.01
+    person.run(3.0)
+    assert (person.sample.hand.xyz == np.array(OVER_TABLE)).all()
 
 
 def _straight(start: Array, goal: Array) -> JointTrajectory:
