@@ -51,6 +51,7 @@ class InstalledModels:
             joints=tuple(zip(model.limits.lower_rad, model.limits.upper_rad, strict=True)),
             tool=kind_of_mechanism(model.tool.kind).name if model.tool is not None else None,
             digital_outputs=digital_outputs(cell, robot, of_model=model.digital_outputs),
+            digital_inputs=model.digital_inputs,
         )
 
     def drawn(self, cell: Cell) -> StaticCell:

@@ -12,6 +12,7 @@ from engine.clock import Clock
 from engine.document import Cell
 from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
+from robots.arm.services.input_services import InputServices, require_inputs
 from robots.arm.services.output_services import OutputServices, require_outputs
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement, SimScene
@@ -92,6 +93,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         clock=clock,
         gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
         outputs=_outputs(cell, world, placement),
+        inputs=_inputs(cell, world, placement),
         frames=cell.document.fixed_frames,
         workspace=workspace,
     )
@@ -108,3 +110,11 @@ def _outputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> OutputServ
     count = len(port.values) if port is not None else 0
     uses = require_outputs(cell, name, count=count, owner=f"a {placement.robot().name}")
     return OutputServices(name, port, uses=uses) if port is not None else None
+
+
+def _inputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> InputServices | None:
+    """Return the inputs of an arm, None without any; raises CellError where the cell names a missing input."""
+    name, port = placement.name, world.inputs(placement.name)
+    count = port.count if port is not None else 0
+    names = require_inputs(cell, name, count=count, owner=f"a {placement.robot().name}")
+    return InputServices(name, port, names=names, simulate=port.simulate) if port is not None else None

@@ -27,7 +27,9 @@ from states.gripper.open import Open
 from states.hand.check_held import CheckHeld as HandCheckHeld
 from states.hand.close import Close as HandClose
 from states.hand.open import Open as HandOpen
+from states.io.read_input import ReadInput
 from states.io.set_output import SetOutput
+from states.io.wait_for_input import WaitForInput
 from states.manipulation.pick_part import PickPart
 from states.manipulation.place_part import PlacePart
 from states.motion.execute_plan import ExecutePlan
@@ -117,6 +119,8 @@ _STATES: tuple[type[State], ...] = (
     SetImpedance,
     SetLoad,
     SetOutput,
+    ReadInput,
+    WaitForInput,
     SetSpeed,
     SetToolFrame,
     SetValue,

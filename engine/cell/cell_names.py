@@ -24,15 +24,14 @@ from engine.wording.suggestions import did_you_mean
 CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
-    "robot", "tool", "link", "output", "part", "person", "camera", "detector", "label", "frame", "arm_frame", "body",
-    "obstacle", "scene_part", "planner", "topic", "bus_topic", "skill",
+    "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
+    "body", "obstacle", "scene_part", "planner", "topic", "bus_topic", "skill",
 ))  # fmt: skip
-"""`tool` (`left/gripper`), `link` (`left/panda_hand`) and `output` (`left/3`, `left/gripper`) belong to a robot,
-`label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
-of the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
-planning scene, to which behaviors add.
-`topic` is one that the cell document declares. `bus_topic` is any topic, `skill` any service or action: only an open
-cell knows those."""
+"""`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
+`left/door`) belong to a robot, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an
+arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`, `obstacle`
+and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell document
+declares. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -40,7 +39,7 @@ _WORDS: Mapping[str, str] = {
     "body": "body",
     "scene_part": "part",
 }
-_OWNED = frozenset[CellNameKind](("tool", "link", "output", "label"))
+_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label"))
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
 
@@ -157,6 +156,7 @@ def cell_names(cell: Cell) -> CellNames:
         "robot": frozenset(robots),
         "link": links,
         "output": frozenset(_outputs(robots, summaries)),
+        "input": frozenset(_inputs(robots, summaries)),
         "part": parts,
         "person": people,
         "camera": frozenset(document.cameras),
@@ -225,3 +225,10 @@ def _outputs(robots: Mapping[str, RobotSpec], summaries: Mapping[str, RobotSumma
         summary = summaries[name]
         yield from (f"{name}/{use}" for use in robot.outputs)
         yield from (f"{name}/{number}" for number in range(summary.digital_outputs if summary is not None else 0))
+
+
+def _inputs(robots: Mapping[str, RobotSpec], summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
+    for name, robot in robots.items():
+        summary = summaries[name]
+        yield from (f"{name}/{each}" for each in robot.inputs)
+        yield from (f"{name}/{number}" for number in range(summary.digital_inputs if summary is not None else 0))

@@ -31,6 +31,7 @@ class RobotSummary(msgspec.Struct, frozen=True, kw_only=True):
     joints: tuple[tuple[float, float], ...]
     tool: str | None
     digital_outputs: int
+    digital_inputs: int = 0
 
 
 class RobotModels(Protocol):

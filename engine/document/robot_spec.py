@@ -6,13 +6,14 @@ from typing import Annotated, Literal, cast
 
 from msgspec import Meta
 
-from engine.document.placement import FramedPlacement
+from engine.document.placement import FramedPlacement, Name
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
 
 OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
 OutputNumber = Annotated[int, Meta(ge=0, description="Number of a digital output of the robot's controller, from 0")]
+InputNumber = Annotated[int, Meta(ge=0, description="Number of a digital input of the robot's controller, from 0")]
 
 
 class GripperSpec(StrictModel, frozen=True, kw_only=True):
@@ -37,8 +38,8 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
     `model` (also that of the gripper) is the name of a built-in model, or the path of a model folder
     with a `/` in it, relative to this document. `calibration` is the arm's factory calibration file.
     `coupled_joints`: the controller counts coupled axes relative to each other. `outputs` maps uses to
-    digital outputs of the controller. `driver` is `sim`, or a mapping with the driver's name as `kind`
-    and its options as further keys.
+    digital outputs of the controller, `inputs` names of your own to its digital inputs. `driver` is `sim`,
+    or a mapping with the driver's name as `kind` and its options as further keys.
     """
 
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
@@ -48,6 +49,7 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
     calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
     coupled_joints: bool = False
     outputs: dict[OutputUse, OutputNumber] = {}
+    inputs: dict[Name, InputNumber] = {}
 
     @property
     def simulated(self) -> bool:

@@ -26,6 +26,7 @@ from robots.arm.scene_queries.path_guard import PathGuard
 from robots.arm.services.arm_control_services import ArmControlServices
 from robots.arm.services.arm_status import ArmStatusPublisher
 from robots.arm.services.forward_preview import ForwardPreview
+from robots.arm.services.input_services import InputServices
 from robots.arm.services.inverse_kinematics_services import InverseKinematicsServices
 from robots.arm.services.output_services import OutputServices
 from robots.arm.waypoint_motions import WaypointMotions
@@ -57,6 +58,7 @@ class ArmServer:
         clock: Virtual time plans inline, real time in a thread.
         gripper: The tool on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
+        inputs: The digital inputs of its controller, if any.
         tolerance: Following tolerance of the port.
         frames: Poses in the world of the named frames of the cell, in which goals may be given.
         workspace: The workspace shared with other arms; without one the arm has no collision-free motions and
@@ -73,6 +75,7 @@ class ArmServer:
         clock: Clock,
         gripper: ToolServer | None = None,
         outputs: OutputServices | None = None,
+        inputs: InputServices | None = None,
         tolerance: Tolerance | None = None,
         frames: Mapping[str, Pose] | None = None,
         workspace: Workspace | None = None,
@@ -89,6 +92,7 @@ class ArmServer:
         )
         self._gripper = gripper
         self.outputs = outputs
+        self.inputs = inputs
         self._report = report = ArmStatusPublisher(runner)
         self._groups: tuple[SkillGroup, ...] = (
             PathMotions(runner),
@@ -105,6 +109,7 @@ class ArmServer:
             ArmControlServices(runner, report),
             report,
             *((outputs,) if outputs is not None else ()),
+            *((inputs,) if inputs is not None else ()),
             *((FreeMotions(runner, workspace),) if workspace is not None else ()),
         )
 

@@ -64,6 +64,8 @@ class RobotModel:
     licence_file: Path
     digital_outputs: int = 0
     """General purpose outputs of the robot's controller, numbered from 0."""
+    digital_inputs: int = 0
+    """General purpose inputs of the robot's controller, numbered from 0."""
 
     @property
     def dof(self) -> int:

@@ -12,6 +12,7 @@ from robots.port.force_task import ForceRecord, ForceTask
 from robots.port.grasp_check import GraspCommand
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
+from robots.port.inputs import InputPort
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import ConfirmedOutputs, OutputOwner, OutputPort, SwitchableOutputs
 from robots.port.separation import MeasuredSeparation, PermittedSpeed, SeparationRule
@@ -31,6 +32,7 @@ __all__ = [
     "GripperSample",
     "HandPort",
     "HandSample",
+    "InputPort",
     "JointTrajectory",
     "MeasuredSeparation",
     "Motion",

@@ -10,6 +10,7 @@ from engine.errors import BusError, FlexcellError
 from engine.messages import JointSetPoint, JointState, Quaternion, RobotDescription, Vector3, Wrench
 from engine.messages.pose_algebra import compose_poses, invert_pose, rotate_vector
 from engine.skills.arm_control import ArmStatus
+from engine.skills.digital_inputs import DigitalInputs
 from engine.skills.digital_outputs import DigitalOutputs
 from engine.skills.motion import ForwardKinematics
 from robots.reconcell.command_interface import CommandInterface
@@ -78,8 +79,7 @@ class StateBroadcast:
         desired = self._with_velocity(set_point)
         tool = compose_poses(self._to_base, pose)
         x, y, z, w = pose.xyzw
-        outputs = self._latest("digital_outputs", DigitalOutputs)
-        values = outputs.values if outputs is not None else ()
+        outputs, inputs = self._latest("digital_outputs", DigitalOutputs), self._latest("digital_inputs", DigitalInputs)
         return RobotStatePacket(
             joints=joints.position_rad,
             desired_joints=desired.position_rad,
@@ -89,8 +89,8 @@ class StateBroadcast:
             orientation=to_wire(tool.xyzw, self._order),
             sensor_wrench=_turned(wrench, (-x, -y, -z, w)),
             tool_wrench=_turned(wrench, self._to_base.xyzw),
-            outputs=float(sum(1 << number for number, value in enumerate(values) if value)),
-            inputs=0.0,
+            outputs=_bits(outputs),
+            inputs=_bits(inputs),
         )
 
     def _flags(self) -> dict[int, Packet]:
@@ -142,3 +142,9 @@ class StateBroadcast:
 def _turned(wrench: Wrench, by: Quaternion) -> tuple[float, ...]:
     force: Vector3 = rotate_vector(by, wrench.force_n)
     return (*force, *rotate_vector(by, wrench.torque_nm))
+
+
+def _bits(state: DigitalOutputs | DigitalInputs | None) -> float:
+    """Return the values as the bits of a number."""
+    values = state.values if state is not None else ()
+    return float(sum(1 << number for number, value in enumerate(values) if value))

@@ -11,14 +11,21 @@ from engine.cell.drivers import DriverOptions
 from engine.document import StrictModel
 
 Output = Annotated[int, Meta(ge=0, le=255, description="Number of a digital output, from 0")]
+Input = Annotated[int, Meta(ge=0, le=255, description="Number of a digital input, from 0")]
 Seconds = Annotated[float, Meta(ge=0.0, le=30.0, description="Seconds that the tool takes")]
 
 
 class PartSensor(StrictModel, frozen=True, kw_only=True):
-    """What detects a part in the tool: a boolean topic that the cell document declares under `topics`."""
+    """What detects a part in the tool: an input of the device with the outputs, or a boolean topic of the cell."""
 
-    topic: Annotated[str, Meta(min_length=1, description="Its name, `line/part_sensor`")]
+    topic: Annotated[str, Meta(description="Name of a topic that the cell declares, `line/part_sensor`")] = ""
+    input: Input | None = None
     inverted: Annotated[bool, Meta(description="Whether it is false while it detects a part")] = False
+
+    def __post_init__(self) -> None:
+        """Refuse none of both, and both."""
+        if bool(self.topic) == (self.input is not None):
+            raise ValueError("a sensor has either `topic` or `input`")
 
 
 class SwitchedToolOptions(DriverOptions, frozen=True, kw_only=True):

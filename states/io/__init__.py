@@ -1,4 +1,4 @@
-"""States that switch digital outputs."""
+"""States that switch digital outputs and read digital inputs."""
 
 ICON = "output"
 """The name of the icon of these states."""

@@ -25,6 +25,7 @@ class RoundTrip(msgspec.Struct, frozen=True, kw_only=True):
 class DeviceReport(msgspec.Struct, frozen=True, kw_only=True):
     """One device as it answered; with an `error` it did not, and nothing of it is known.
 
+    `inputs` and `outputs` are the digital ones of a controller, by number.
     `state` is what the device says of itself, in words. `fault` is its fault by name, empty for none.
     `clock_offset_s` is the device's clock minus ours; None for a device without a clock.
     """
@@ -36,6 +37,8 @@ class DeviceReport(msgspec.Struct, frozen=True, kw_only=True):
     fault: str = ""
     firmware: str = ""
     readings: dict[str, float] = {}
+    inputs: tuple[bool, ...] = ()
+    outputs: tuple[bool, ...] = ()
     round_trip: RoundTrip | None = None
     clock_offset_s: float | None = None
     capabilities: tuple[str, ...] = ()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Coroutine, Mapping
+import re
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import msgspec
 
@@ -16,6 +17,8 @@ from engine.registry import load_factory, registered_names
 from engine.wording.suggestions import did_you_mean
 
 EMULATORS = "flexcell.emulators"
+# The words of asyncio, whose error has the address nowhere else.
+_BOUND = re.compile(r"\('(?P<host>[^']+)', (?P<port>\d+)[^)]*\): (?:\[[^]]*\] )?(?P<reason>.+)")
 
 
 class EmulatorOptions(StrictModel, frozen=True, kw_only=True):
@@ -80,9 +83,43 @@ class Emulator:
             raise FlexcellError(f"a device of kind {self.kind} cannot be part of an emulated cell", hint=hint)
         return cast("EmulatorOptions", _found(self.for_driver)(driver, model))
 
-    def run(self, options: EmulatorOptions, ready: Ready, **plant: object) -> Coroutine[Any, Any, None]:
-        """Return the coroutine that serves until it is cancelled; with a `plant` it moves joints of others."""
-        return cast("Coroutine[Any, Any, None]", _found(self.serve)(options, ready, **plant))
+    async def run(self, options: EmulatorOptions, ready: Ready, **plant: object) -> None:
+        """Serve until this is cancelled; with a `plant` it moves joints of others.
+
+        Raises:
+            FlexcellError: it cannot listen where the options say, or cannot be what they say.
+        """
+        places: list[Mapping[str, object]] = []
+
+        def note(place: Mapping[str, object]) -> None:
+            places.append(place)
+            ready(place)
+
+        try:
+            await cast("Awaitable[None]", _found(self.serve)(options, note, **plant))
+        except (OSError, ExceptionGroup) as failed:
+            error = _only_error(failed)
+            if isinstance(error, FlexcellError):
+                raise error from failed
+            if places or not isinstance(error, OSError):
+                raise
+            raise _cannot_listen(error, self.kind) from error
+
+
+def _only_error(failed: Exception) -> Exception:
+    """Return what alone has ended a group of tasks; the group where there is more."""
+    if not isinstance(failed, ExceptionGroup):
+        return failed
+    group = cast("ExceptionGroup[Exception]", failed)
+    return _only_error(group.exceptions[0]) if len(group.exceptions) == 1 else group
+
+
+def _cannot_listen(error: OSError, kind: str) -> FlexcellError:
+    reason = error.strerror or str(error)
+    bound = _BOUND.search(reason)
+    where, why = (f" at {bound['host']}:{bound['port']}", bound["reason"]) if bound else ("", reason)
+    hint = "another emulator or program may be there, `ss -ltnp` names it: end it, or choose another host or port"
+    return FlexcellError(f"the emulator {kind} cannot listen{where}: {why}", hint=hint)
 
 
 def _found(place: str) -> Callable[..., object]:

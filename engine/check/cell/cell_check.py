@@ -91,18 +91,22 @@ def _check_models(cell: Cell, robot: str, entry: RobotSpec, models: RobotModels)
     if unknown:
         return
     try:
-        outputs = models.summary(cell, robot).digital_outputs
+        summary = models.summary(cell, robot)
     except FlexcellError as error:
         position = error.where if isinstance(error.where, Position) else cell.source.position((*here, "model"))
         message = f"robot `{robot}`: {error.message}"
         yield new_finding("unknown-model", message, path="", position=position, hint=error.hint or "")
         return
-    for use, number in entry.outputs.items():
-        if number >= outputs:
-            hint = f"a {entry.model} has {f'the outputs 0 to {outputs - 1}' if outputs else 'no outputs'}"
-            position = cell.source.position((*here, "outputs", use))
-            message = f"`{robot}` has no output {number}"
-            yield new_finding("unknown-in-cell", message, path="", position=position, hint=hint)
+    for what, numbers, count in (
+        ("output", entry.outputs, summary.digital_outputs),
+        ("input", entry.inputs, summary.digital_inputs),
+    ):
+        for name, number in numbers.items():
+            if number >= count:
+                hint = f"a {entry.model} has {f'the {what}s 0 to {count - 1}' if count else f'no {what}s'}"
+                position = cell.source.position((*here, f"{what}s", name))
+                message = f"`{robot}` has no {what} {number}"
+                yield new_finding("unknown-in-cell", message, path="", position=position, hint=hint)
 
 
 def _check_seed(cell: Cell, names: CellNames) -> tuple[Finding, ...]:

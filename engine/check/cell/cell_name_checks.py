@@ -129,7 +129,7 @@ class CellNameCheck:
 
     def _name(self, use: _Use, value: object) -> str | None:
         """Return the name as the cell lists it; None if there is no name to check."""
-        is_number = use.kind == "output" and isinstance(value, int) and not isinstance(value, bool)
+        is_number = use.kind in ("output", "input") and isinstance(value, int) and not isinstance(value, bool)
         if not (is_number or isinstance(value, str)) or value == "" or value in use.besides:
             return None
         if use.owner is None:

@@ -202,7 +202,7 @@ class _Writing:
         if target is None or target == use.name:
             return None
         value = target.partition("/")[2] if use.below else target
-        return int(value) if use.kind == "output" and value.isdigit() else value
+        return int(value) if use.kind in ("output", "input") and value.isdigit() else value
 
 
 def _put(data: object, keys: DataPath, value: object) -> None:

@@ -22,8 +22,12 @@ Choices = Mapping[str, str]
 """The chosen names by `kind:name` or `name`; an empty one keeps the name as it is."""
 _ALIKE = 0.6
 """How similar two names must be for one to be proposed for the other, 0 to 1."""
-_BELOW: Mapping[str, CellNameKind] = {"link": "link", "output": "output", "label": "label", "tool": "tool"}
-_ORDER = ("robot", "part", "fixture", "frame", "person", "camera", "tool", "link", "output", "label", "planner")
+_BELOW: Mapping[str, CellNameKind] = {
+    "link": "link", "output": "output", "input": "input", "label": "label", "tool": "tool",
+}  # fmt: skip
+_ORDER = (
+    "robot", "part", "fixture", "frame", "person", "camera", "tool", "link", "output", "input", "label", "planner",
+)  # fmt: skip
 
 
 class NameCandidate(msgspec.Struct, frozen=True, kw_only=True):
@@ -173,7 +177,7 @@ class _Mapping:
         if kind in _BELOW:
             owner = self._targets.get(("camera" if kind == "label" else "robot", name.partition("/")[0]))
             found = [each for each in found if owner is None or each.partition("/")[0] == owner]
-        if kind == "output":
+        if kind in ("output", "input"):
             # A number is written as a number, a use by its name.
             found = [each for each in found if _is_number(each) == _is_number(name)]
         return sorted(found, key=lambda each: -self._score(kind, name, each))

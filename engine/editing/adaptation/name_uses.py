@@ -22,7 +22,7 @@ SignatureOf = Callable[[str], StateSignature | None]
 _NAMING = frozenset(("cell_name", "cell_label", "entry", "entry_of"))
 """The annotations of a value that names something; a `cell_label` need not be in the cell."""
 _NOTHING: Annotations = {}
-_OWNED = ("link", "output", "label", "tool")
+_OWNED = ("link", "output", "input", "label", "tool")
 
 
 class NameUse(msgspec.Struct, frozen=True, kw_only=True):
@@ -148,7 +148,7 @@ class NameUses:
         needs = is_kind(due.says.get("cell_name", due.says.get("cell_label")))
         if isinstance(entry, str) and isinstance(value, str) and value:
             return NameUse(kind=entry, name=value, needs=entry, path=path, keys=keys)
-        is_number = needs == "output" and isinstance(value, int) and not isinstance(value, bool)
+        is_number = needs in ("output", "input") and isinstance(value, int) and not isinstance(value, bool)
         besides = cast("Sequence[object]", due.says.get("or", ()))
         if needs is None or not (is_number or isinstance(value, str)) or value == "" or value in besides:
             return None

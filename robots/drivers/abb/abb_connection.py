@@ -121,6 +121,11 @@ class AbbConnection:
         return self._switch
 
     @property
+    def inputs(self) -> None:
+        """None: signals of the controller are not read."""
+        return
+
+    @property
     def problem(self) -> str:
         """Why the arm may not move at present, by name and with what to do; empty if it may."""
         return self._problem

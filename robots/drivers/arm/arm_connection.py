@@ -8,6 +8,7 @@ from typing import Protocol
 
 from engine.cell.drivers import DeviceReport
 from robots.port import ArmPort
+from robots.port.inputs import InputPort
 from robots.port.outputs import OutputPort
 
 NORMAL = "normal"
@@ -43,6 +44,11 @@ class ArmConnection(Protocol):
     @property
     def outputs(self) -> OutputPort | None:
         """The digital outputs of its controller, read back; None without any."""
+        ...
+
+    @property
+    def inputs(self) -> InputPort | None:
+        """The digital inputs of its controller; None where the driver reads none."""
         ...
 
     @property

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from engine.cell.drivers import DeviceContext
 from engine.clock import Clock
 from engine.errors import CellError
+from robots.arm.services.input_services import InputServices, require_inputs
 from robots.arm.services.output_services import OutputServices, require_outputs
 from robots.model.robot_model import RobotModel
-from robots.port import OutputPort
+from robots.port import InputPort, OutputPort
 from robots.port.heartbeat import ENGINE_SILENCE_S
 from robots.scene.scene_builder import driven_arm
 from robots.scene.sim_scene import ArmPlacement
@@ -53,6 +54,12 @@ class ArmSetup:
         name = self.context.robot
         uses = require_outputs(self.context.cell, name, count=len(port.values), owner=f"the controller of {name}")
         return OutputServices(name, port, uses=uses)
+
+    def input_services(self, port: InputPort | None) -> InputServices | None:
+        """Return its inputs on the bus, None without any; raises CellError where the cell names a missing input."""
+        name, count = self.context.robot, port.count if port is not None else 0
+        names = require_inputs(self.context.cell, name, count=count, owner=f"the controller of {name}")
+        return InputServices(name, port, names=names) if port is not None else None
 
 
 def arm_setup(context: DeviceContext, *, clock: Clock) -> ArmSetup:

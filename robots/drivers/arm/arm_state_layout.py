@@ -10,7 +10,7 @@ import numpy as np
 from engine.skills.arm_control import ControlSettings
 from robots.port import ArmSample, Array
 
-_OUTPUTS = 32
+_OUTPUTS = _INPUTS = 32
 ToolNumbers = tuple[float, float, float, float, float, float, float]
 """Load, kg, its centre of mass and the tool centre point, m, in the tool link."""
 NO_TOOL: ToolNumbers = (nan, nan, nan, nan, nan, nan, nan)
@@ -33,6 +33,7 @@ class ArmProcessState:
     read_at_s: float
     readings: int
     tool: ToolNumbers = NO_TOOL
+    inputs: tuple[bool, ...] = ()
 
     def has_settings(self, settings: ControlSettings) -> bool:
         """Return whether the controller has their tool and load, or adopts them at the end of a motion."""
@@ -52,7 +53,9 @@ class ArmStateLayout:
         self._wrench = slice(8, 14)
         self._outputs = slice(14, 14 + _OUTPUTS)
         self._tool = slice(self._outputs.stop, self._outputs.stop + len(NO_TOOL))
-        self._joints = slice(self._tool.stop, self._tool.stop + 5 * dof)
+        # Their number, then their values.
+        self._inputs = slice(self._tool.stop, self._tool.stop + 1 + _INPUTS)
+        self._joints = slice(self._inputs.stop, self._inputs.stop + 5 * dof)
         self.size = self._joints.stop
 
     def write(self, values: Array, state: ArmProcessState) -> None:
@@ -72,6 +75,8 @@ class ArmStateLayout:
         values[self._tool] = state.tool
         values[self._outputs] = 0.0
         values[self._outputs][: len(state.outputs)] = state.outputs
+        values[self._inputs] = 0.0
+        values[self._inputs][: 1 + len(state.inputs)] = (len(state.inputs), *state.inputs)
         block = values[self._joints].reshape(5, self._dof)
         block[0], block[1], block[2] = sample.position_rad, sample.velocity_rad_s, sample.effort_nm
         block[3], block[4] = sample.desired_rad, sample.external_nm
@@ -91,6 +96,7 @@ class ArmStateLayout:
             wrench=values[self._wrench],
             reflex=bool(reflex),
         )
+        inputs = values[self._inputs]
         return ArmProcessState(
             sample=sample,
             motion=int(motion),
@@ -100,4 +106,5 @@ class ArmStateLayout:
             read_at_s=read_at_s,
             readings=int(readings),
             tool=(kg, com_x, com_y, com_z, tool_x, tool_y, tool_z),
+            inputs=tuple(np.asarray(inputs[1 : 1 + int(inputs[0])], dtype=bool).tolist()),
         )

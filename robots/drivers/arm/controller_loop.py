@@ -39,6 +39,8 @@ _STEP_S = 0.001
 _STILL_MOVING_AFTER_S = 3.0
 # Measured joints differ by their noise from one reading to the next.
 _MOVED_RAD = 1e-4
+# A brake that is released lets an arm sag a little.
+_ENABLED_NEAR_RAD = 0.1
 NOT_ENABLED = "motion is not enabled"
 _INVALID_HINT = "check the versions of controller and client library; only reading is restored by itself"
 ENABLE_HINT = "look at the arm, then permit motion: `flexcell run --enable REASON`, or the skill enable_device"
@@ -234,6 +236,7 @@ class ControllerLoop:
             progress=control.motion.progress,
             speed_scaling=reading.speed_scaling,
             outputs=reading.outputs,
+            inputs=reading.inputs,
             read_at_s=self._read_at_s,
             readings=self.readings,
             tool=self._tool,
@@ -300,7 +303,7 @@ class ControllerLoop:
     def _set_tool(self) -> ControllerReading:
         """Set tool and load at rest, and return the first reading after it; raises MotionRefused."""
         self._wants_tool, self._tool = False, NO_TOOL
-        settings = self._settings
+        settings, before_rad = self._settings, self.control.state.position.copy()
         self._controller.enable(
             tcp_xyz_m=self._at_flange(settings.tool_xyz_m),
             load_kg=settings.load_kg,
@@ -309,6 +312,14 @@ class ControllerLoop:
         reading = self._await_reading()
         if reading.stopped_by:
             raise MotionRefused(reading.stopped_by, hint=reading.remedy)
+        # Motion begins where this reading says: a single one that cannot be would have the arm go there.
+        off_rad = np.abs(reading.position_rad - before_rad)
+        joint = int(off_rad.argmax())
+        if not off_rad[joint] < _ENABLED_NEAR_RAD:
+            raise MotionRefused(
+                f"{self._joints[joint]} is measured {off_rad[joint]:.3g} rad from where it rested before",
+                hint="look at the arm and its controller, then enable it again",
+            )
         self._tool = tool_numbers(settings)
         return reading
 

@@ -146,6 +146,7 @@ class DrivenArm:
                 port=connection.port,
                 clock=self._clock,
                 outputs=setup.output_services(outputs) if outputs is not None else None,
+                inputs=setup.input_services(connection.inputs),
                 tolerance=self._tolerance,
                 frames=setup.context.cell.document.fixed_frames,
                 workspace=setup.workspace(),
@@ -239,6 +240,9 @@ class DrivenArm:
         while True:
             await asyncio.sleep(_PUBLISH_PERIOD_S)
             self._measure_link()
+            inputs = self._opened().inputs
+            if inputs is not None:
+                inputs.publish_changes()
             if not self._connection.lost_reason:
                 self._mirror()
                 if self._topics is not None:

@@ -48,6 +48,7 @@ class ControllerReading:
         remedy: What a person can do about `stopped_by`.
         speed_scaling: Share of the commanded speed that the controller permits at present, 0 to 1.
         outputs: Present values of its digital outputs.
+        inputs: Present values of its digital inputs.
         periods: Periods since the last reading in which a controller that goes on by itself has continued the motion:
             the next set point is as many farther. 1 for a controller that waits for set points.
         held_rad: Set point that the controller holds, (n,), from which motion starts; None where it tells none.
@@ -62,6 +63,7 @@ class ControllerReading:
     remedy: str = ""
     speed_scaling: float = 1.0
     outputs: tuple[bool, ...] = ()
+    inputs: tuple[bool, ...] = ()
     periods: int = 1
     held_rad: Array | None = None
 

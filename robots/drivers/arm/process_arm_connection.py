@@ -32,6 +32,7 @@ from robots.drivers.arm.arm_process_messages import (
     ToArmProcess,
 )
 from robots.drivers.arm.arm_state_layout import ArmProcessState, ArmStateLayout
+from robots.drivers.arm.controller_inputs import ControllerInputs
 from robots.drivers.arm.controller_loop import ENABLE_HINT, NOT_ENABLED
 from robots.drivers.arm.controller_outputs import ControllerOutputs
 from robots.io.worker_process import WorkerProcess
@@ -119,6 +120,9 @@ class ProcessArmConnection:
             values=lambda: self.state().outputs,
             ask=self._request_answer,
         )
+        self._inputs = ControllerInputs(
+            count=model.digital_inputs, values=lambda: self.state().inputs, lost_reason=lambda: self._lost_reason
+        )
         self._forbid(NOT_ENABLED, ENABLE_HINT)
 
     @property
@@ -130,6 +134,11 @@ class ProcessArmConnection:
     def outputs(self) -> ControllerOutputs | None:
         """The digital outputs of its controller, read back; None without any."""
         return self._outputs if self._outputs.count else None
+
+    @property
+    def inputs(self) -> ControllerInputs | None:
+        """The digital inputs of its controller; None without any."""
+        return self._inputs if self._inputs.count else None
 
     @property
     def problem(self) -> str:
@@ -226,6 +235,8 @@ class ProcessArmConnection:
             fault="" if self.problem in {"", NOT_ENABLED} else self.problem,
             firmware=opened.identity.firmware if opened is not None else "",
             readings={f"{name}_rad": value for name, value in joints} | {"speed_scaling": last.speed_scaling},
+            inputs=last.inputs[: self._inputs.count],
+            outputs=last.outputs[: self._outputs.count],
             round_trip=RoundTrip.of(times_s),
         )
 

@@ -81,13 +81,19 @@ class EmulatedCell:
         places: dict[str, Mapping[str, object]] = {}
         for device in self._devices:
             place: asyncio.Future[Mapping[str, object]] = asyncio.get_running_loop().create_future()
-            serving = device.emulator.run(device.options, place.set_result, plant=self._plant(device))
-            task = group.create_task(serving, name=device.name)
+            task = group.create_task(self._run(device, place), name=device.name)
             await asyncio.wait((task, place), return_when=asyncio.FIRST_COMPLETED)
             if not place.done():
                 await task
             places[device.name] = place.result()
         return places
+
+    async def _run(self, device: _Device, place: asyncio.Future[Mapping[str, object]]) -> None:
+        try:
+            await device.emulator.run(device.options, place.set_result, plant=self._plant(device))
+        except FlexcellError as error:
+            error.where = error.where or device.name
+            raise
 
     def _plant(self, device: _Device) -> Plant:
         """Return what a device moves: the fingers of the tool, or the joints of the arm."""
@@ -108,7 +114,7 @@ async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:
     """Open the world of a cell with everything in it simulated, and serve until this is cancelled.
 
     Raises:
-        FlexcellError: the cell has no device with a driver, or one of them cannot be emulated.
+        FlexcellError: the cell has no device with a driver, one of them cannot be emulated, or cannot listen.
     """
     cell = load_cell(options.file)
     assigned = tuple(assigned_drivers(cell))

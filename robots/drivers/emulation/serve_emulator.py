@@ -15,9 +15,9 @@ async def serve_emulator(
 ) -> None:
     """Serve until this is cancelled; `ready` receives where."""
     side = SideChannel(execute, host=host, port=side_port)
-    place = await stream.open()
-    ready({"connection": connection, **place, "side_port": await side.open()})
     try:
+        place = await stream.open()
+        ready({"connection": connection, **place, "side_port": await side.open()})
         await asyncio.Event().wait()
     finally:
         side.close()

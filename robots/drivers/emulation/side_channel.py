@@ -47,5 +47,5 @@ class SideChannel:
     async def _answer(self, line: bytes) -> Mapping[str, object]:
         try:
             return await self._handler(msgspec.json.decode(line, type=dict[str, object]))
-        except (msgspec.DecodeError, msgspec.ValidationError, KeyError, TypeError, ValueError) as error:
+        except (msgspec.DecodeError, msgspec.ValidationError, KeyError, TypeError, ValueError, OSError) as error:
             return {"error": f"{type(error).__name__}: {error}"}

@@ -29,7 +29,7 @@ def new_switched_tool(options: SwitchedToolOptions, *, name: str, clock: Clock, 
     owner = options.device or context.robot
     if owner not in document.robots:
         raise CellError(f"`device` is {owner}, which the cell does not have", where=name)
-    if options.sensor is not None and options.sensor.topic not in document.topics:
+    if options.sensor is not None and options.sensor.topic and options.sensor.topic not in document.topics:
         hint = f"declare it: `topics: {{{options.sensor.topic}: {{type: boolean}}}}`"
         raise CellError(f"the cell declares no topic {options.sensor.topic}", where=name, hint=hint)
     tool = tool_summary(driven_arm(context.robot, document.robots[context.robot], context.cell.resolve).robot().tool)

@@ -18,6 +18,7 @@ from engine.messages.device_state import DeviceState
 from engine.messages.topic_value import TopicValue
 from engine.robot import DeviceStatus, Reconnectable, Robot
 from engine.skills.devices import EnableDevice
+from engine.skills.digital_inputs import DigitalInputs
 from robots.drivers.device_history import DeviceHistory
 from robots.port import OutputOwner, SwitchableOutputs
 from robots.sim.grip.tool_summary import ToolSummary
@@ -132,13 +133,17 @@ class SwitchedTool:
         """Permit switching.
 
         Raises:
-            RobotError: the device with the outputs is not connected, or does not have them.
+            RobotError: the device with the outputs is not connected, or does not have them, or that of the sensor.
         """
         values = self._outputs().values
         missing = [output for output in self._options.outputs(holds=True) if output >= len(values)]
         if missing:
             hint = f"it has the outputs 0 to {len(values) - 1}"
             raise RobotError(f"{self._owner} has no output {missing[0]}", where=self._name, hint=hint)
+        sensor = self._options.sensor
+        if sensor is not None and sensor.input is not None and sensor.input >= len(self._inputs()):
+            hint = "`flexcell devices` lists the inputs that its driver reads"
+            raise RobotError(f"{self._owner} has no input {sensor.input}", where=self._name, hint=hint)
         _log.warning("%s is enabled by %s: %s", self._name, by or "a person who gave no name", reason)
         self._problem = ""
         self._history.enabled(by=by, reason=reason)
@@ -170,10 +175,21 @@ class SwitchedTool:
 
     def _detected(self) -> bool | None:
         sensor, bus = self._options.sensor, self._bus
-        latest = bus.topic(sensor.topic, TopicValue).latest if sensor is not None and bus is not None else None
-        if sensor is None or latest is None or not isinstance(latest.value, bool):
+        if sensor is None or bus is None:
             return None
-        return latest.value != sensor.inverted
+        if sensor.input is not None:
+            values = self._inputs()
+            value = values[sensor.input] if sensor.input < len(values) else None
+        else:
+            latest = bus.topic(sensor.topic, TopicValue).latest
+            value = latest.value if latest is not None else None
+        return value != sensor.inverted if isinstance(value, bool) else None
+
+    def _inputs(self) -> tuple[bool, ...]:
+        """Return the inputs of the device with the outputs; none where nothing is known of them."""
+        bus = self._bus
+        latest = bus.topic(f"{self._owner}/digital_inputs", DigitalInputs).latest if bus is not None else None
+        return latest.values if latest is not None else ()
 
     def _blocked(self) -> str:
         return self._loss() or self._problem

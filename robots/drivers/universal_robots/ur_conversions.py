@@ -26,6 +26,11 @@ def output_values(bits: int) -> tuple[bool, ...]:
     return tuple(bool(bits >> number & 1) for number in numbers)
 
 
+def input_values(bits: int) -> tuple[bool, ...]:
+    """Return the standard inputs 0 to 7, then those of the tool, from `actual_digital_input_bits`."""
+    return output_values(bits)
+
+
 def output_program(output: int, *, on: bool) -> str:
     """Return a program that sets an output beside the main program."""
     kind, number = ("standard", output) if output < _STANDARD_OUTPUTS else ("tool", output - _STANDARD_OUTPUTS)

@@ -18,6 +18,7 @@ from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_conversions import (
     OUTPUTS,
     base_link_wrench,
+    input_values,
     output_program,
     output_values,
     payload_with_load,
@@ -46,8 +47,8 @@ _PAUSED = 4
 _SERVO_STOP_RAD_S2 = 4.0
 _CB3_PERIOD_S, _E_SERIES_PERIOD_S = 0.008, 0.002
 _VARIABLES = [
-    "timestamp", "actual_q", "actual_qd", "actual_TCP_force", "actual_digital_output_bits", "robot_mode",
-    "safety_status_bits", "robot_status_bits", "speed_scaling", "runtime_state",
+    "timestamp", "actual_q", "actual_qd", "actual_TCP_force", "actual_digital_output_bits", "actual_digital_input_bits",
+    "robot_mode", "safety_status_bits", "robot_status_bits", "speed_scaling", "runtime_state",
 ]  # fmt: skip
 
 
@@ -120,6 +121,7 @@ class UrJointController:
             remedy=remedy(fault) if fault is not None else "",
             speed_scaling=float(receive.getSpeedScaling()),
             outputs=output_values(receive.getActualDigitalOutputBits()),
+            inputs=input_values(receive.getActualDigitalInputBits()),
         )
 
     def enable(self, *, tcp_xyz_m: Array, load_kg: float, load_com_m: Array) -> None:

@@ -32,6 +32,7 @@ from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_conversions import (
     OUTPUTS,
     base_link_wrench,
+    input_values,
     output_program,
     output_values,
     payload_with_load,
@@ -62,8 +63,8 @@ _DISTANCE_TOLERANCES = 2.0
 _NUMBERS = 1 << 30
 _SAME_M, _SAME_KG = 1e-4, 1e-3
 _VARIABLES = (
-    "timestamp", "actual_q", "actual_qd", "actual_TCP_force", "actual_digital_output_bits", "robot_mode",
-    "safety_status_bits", "robot_status_bits", "runtime_state", "speed_scaling", *STATE_OUTPUTS,
+    "timestamp", "actual_q", "actual_qd", "actual_TCP_force", "actual_digital_output_bits", "actual_digital_input_bits",
+    "robot_mode", "safety_status_bits", "robot_status_bits", "runtime_state", "speed_scaling", *STATE_OUTPUTS,
 )  # fmt: skip
 _READ_BACK = ("tcp_offset", "payload")
 
@@ -134,6 +135,7 @@ class UrScriptController:
             remedy=remedy(fault) if fault is not None else "",
             speed_scaling=self._number("speed_scaling"),
             outputs=output_values(self._integer("actual_digital_output_bits")),
+            inputs=input_values(self._integer("actual_digital_input_bits")),
         )
 
     def enable(self, *, tcp_xyz_m: Array, load_kg: float, load_com_m: Array) -> None:

@@ -99,6 +99,7 @@ def compose(
         licence=document.licence.name,
         licence_file=arm.locate(document.licence),
         digital_outputs=document.digital_outputs,
+        digital_inputs=document.digital_inputs,
     )
 
 

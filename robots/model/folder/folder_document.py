@@ -111,6 +111,7 @@ class RobotDocument(StrictModel, frozen=True, kw_only=True):
     device_joints: tuple[DeviceJoint, ...] = ()
     calibration: CalibrationFormat | None = None
     digital_outputs: Annotated[int, Meta(ge=0, description="General purpose outputs of the controller")] = 0
+    digital_inputs: Annotated[int, Meta(ge=0, description="General purpose inputs of the controller")] = 0
     collisions: CollisionPairs = CollisionPairs()
     licence: Licence
 

@@ -1,11 +1,14 @@
-"""The ports of the arms of a world, and of the outputs of their controllers; arms with drivers have none here."""
+"""The ports of the arms of a world and of the inputs and outputs of their controllers; arms with drivers have none."""
 
 from __future__ import annotations
 
 from robots.control.commanding.commanded_arm_port import CommandedArmPort
 from robots.control.commanding.motion_registry import MotionRegistry
 from robots.scene.sim_scene import ArmPlacement, SimScene
+from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.host.world_host import WorldHost
+from robots.sim.loop.snapshot import ArmSummary
+from robots.sim.ports.sim_inputs import SimInputPort
 from robots.sim.ports.sim_outputs import SimOutputPort
 from robots.sim.ports.world_arm_link import WorldArmLink
 
@@ -21,10 +24,25 @@ def arm_ports(scene: SimScene, host: WorldHost, board: MotionRegistry) -> dict[s
     return ports
 
 
+def arm_summaries(scene: SimScene) -> dict[str, ArmSummary]:
+    """Return what each arm is, by its name."""
+    robots = {placement.name: placement.robot() for placement in scene.arms}
+    return {
+        name: ArmSummary(name=name, joints=robot.arm_joints, tool=tool_summary(robot.tool))
+        for name, robot in robots.items()
+    }
+
+
 def output_ports(scene: SimScene) -> dict[str, SimOutputPort]:
     """Return the outputs of each simulated arm that has some, by its name."""
     counts = {placement.name: _outputs(placement) for placement in scene.arms if not placement.driven}
     return {name: SimOutputPort(name, count=count) for name, count in counts.items() if count}
+
+
+def input_ports(scene: SimScene) -> dict[str, SimInputPort]:
+    """Return the inputs of each simulated arm that has some, by its name."""
+    counts = {each.name: each.robot().digital_inputs for each in scene.arms if not each.driven}
+    return {name: SimInputPort(name, count=count) for name, count in counts.items() if count}
 
 
 def _outputs(placement: ArmPlacement) -> int:

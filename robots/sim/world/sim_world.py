@@ -20,16 +20,16 @@ from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResu
 from robots.control.commanding.arm_commands import StopAll
 from robots.control.commanding.motion_registry import MotionRegistry
 from robots.port import ArmPort, Array, GripperPort, HandPort
-from robots.scene.sim_scene import ArmPlacement, SimScene
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import MirrorArm, PushSimBody
 from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
-from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.host.lockstep_host import LockstepHost
 from robots.sim.host.process_host import NewStopLine, ProcessHost
 from robots.sim.host.world_host import StepHook, WorldHost
-from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
+from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.scene_description import describe_scene
-from robots.sim.ports.arm_ports import arm_ports, output_ports
+from robots.sim.ports.arm_ports import arm_ports, arm_summaries, input_ports, output_ports
+from robots.sim.ports.sim_inputs import SimInputPort
 from robots.sim.ports.sim_outputs import SimOutputPort
 from robots.sim.ports.tool_ports import ToolPorts
 from robots.sim.world.driven_tools import mirror_driven_tools
@@ -64,10 +64,11 @@ class SimWorld:
         self._host = host
         self._cache = cache
         self._board = MotionRegistry(on_lost=self._lost)
-        self._arms = {placement.name: _summary(placement) for placement in scene.arms}
+        self._arms = arm_summaries(scene)
         self._arm_ports = arm_ports(scene, host, self._board)
         self._tools = ToolPorts(host, self._board, self._arms)
         self._outputs = output_ports(scene)
+        self._inputs = input_ports(scene)
         self._status = DeviceStatus.DISCONNECTED
         self._at_loss = b""
         self._connection_changed: Callable[[], None] = _nothing
@@ -145,6 +146,10 @@ class SimWorld:
         """Return the digital outputs of one arm's controller, None where it has none."""
         return self._outputs.get(name)
 
+    def inputs(self, name: str) -> SimInputPort | None:
+        """Return the digital inputs of one arm's controller, None where it has none."""
+        return self._inputs.get(name)
+
     def measured(self) -> SimSnapshot:
         """Return the latest measurements."""
         return self._host.snapshot()
@@ -158,13 +163,14 @@ class SimWorld:
         memos = {
             robot.name: memo for robot in self._robots if isinstance(robot, StatefulDevice) and (memo := robot.memo())
         }
-        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs, memos)
+        inputs = {name: port.values for name, port in self._inputs.items()}
+        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs, memos, inputs)
         return encode_snapshot(image, model=self._host.summary.model)
 
     async def restore(self, snapshot: bytes) -> None:
         """Restore a snapshot, at rest: set points are held, grippers keep their grip.
 
-        Settings and digital outputs of the arms are restored too.
+        Settings, digital outputs and simulated inputs of the arms are restored too.
 
         Raises:
             RobotError: something moves, the world is lost, or the snapshot is of another world.
@@ -186,8 +192,9 @@ class SimWorld:
             self._board.reflexes = dict(image.reflexes)
         finally:
             self._board.closed_reason = ""
-        for name, values in image.outputs.items():
-            self._outputs[name].recall(values)
+        for ports, values in ((self._outputs, image.outputs), (self._inputs, image.inputs)):
+            for name in values:
+                ports[name].recall(values[name])
         for robot in self._robots:
             robot.recall(image.grips)
             if isinstance(robot, StatefulDevice):
@@ -240,7 +247,7 @@ class SimWorld:
             self._host.begin(asyncio.get_running_loop().time())
 
     def _begin_ports(self) -> None:
-        for port in (*self._arm_ports.values(), *self._outputs.values()):
+        for port in (*self._arm_ports.values(), *self._outputs.values(), *self._inputs.values()):
             port.begin()
 
     def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
@@ -411,8 +418,3 @@ def new_world(
     """Return a world for virtual time (in this process, in lockstep) or real time (in its own process)."""
     host = LockstepHost(scene) if virtual else ProcessHost(scene, new_stop_line=new_stop_line)
     return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
-
-
-def _summary(placement: ArmPlacement) -> ArmSummary:
-    robot = placement.robot()
-    return ArmSummary(name=placement.name, joints=robot.arm_joints, tool=tool_summary(robot.tool))

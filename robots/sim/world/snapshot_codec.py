@@ -25,8 +25,8 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     """A world at one instant.
 
     Its numbers as in `ImageLayout`, the grasp command of each gripper, the settings of each arm, the reasons of active
-    reflexes, and the digital outputs of arms that have some. `memos` are the saved states of devices, by their names,
-    in their own encoding.
+    reflexes, and the digital outputs and inputs of arms that have some. `memos` are the saved states of devices, by
+    their names, in their own encoding.
     """
 
     numbers: bytes
@@ -35,6 +35,7 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     reflexes: dict[str, str]
     outputs: dict[str, tuple[bool, ...]]
     memos: dict[str, bytes] = {}
+    inputs: dict[str, tuple[bool, ...]] = {}
 
     @classmethod
     def of(
@@ -45,10 +46,14 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
         reflexes: dict[str, str],
         outputs: dict[str, tuple[bool, ...]],
         memos: dict[str, bytes] | None = None,
+        inputs: dict[str, tuple[bool, ...]] | None = None,
     ) -> WorldImage:
         """Return the image with these numbers."""
-        data = numbers.astype(_NUMBER, copy=False).tobytes()
-        return cls(numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs, memos=memos or {})
+        data, memos = numbers.astype(_NUMBER, copy=False).tobytes(), memos or {}
+        return cls(
+            numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs, memos=memos,
+            inputs=inputs or {},
+        )  # fmt: skip
 
     def array(self) -> Array:
         """Return the numbers."""

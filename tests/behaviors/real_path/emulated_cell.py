@@ -14,7 +14,7 @@ from typing import Any, Self
 
 from tests.behaviors.application import BEHAVIORS, changed_cell
 from tests.engine.cli.command import FLEXCELL
-from tests.robots.drivers.universal_robots.emulated_controller import own_address
+from tests.robots.own_address import own_address
 
 # A machine that is shared with others falls behind for seconds; nothing here is about how long anything takes.
 _PATIENT_WORLD = "step_s: 0.001, engine_silence_s: 10.0, world_silence_s: 10.0"
@@ -52,7 +52,7 @@ class RealPath:
 
 def _ur10(text: str, host: str) -> str:
     arm = f"{{kind: universal_robots, host: {host}, stale_s: 5.0, watchdog_hz: 1.0, process_silence_s: 10.0}}"
-    line = f"{{kind: modbus_tcp, host: {host}, port: 50200}}"
+    line = f"{{kind: modbus_tcp, host: {host}, port: 15020}}"
     gripper = f"driver: {{kind: robotiq, connection: {line}, stale_s: 5.0, timeout_s: 2.0}}"
     return text.replace("driver: sim", f"driver: {arm}").replace(
         "{model: robotiq_2f85}", f"{{model: robotiq_2f85, {gripper}}}"

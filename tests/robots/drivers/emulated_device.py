@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import json
-import os
 import socket
 import subprocess
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import Any, Self
 
 from engine.cell.drivers import DeviceContext
 from engine.document.cell import load_cell
 from tests.engine.cli.command import FLEXCELL
+from tests.robots.own_address import own_address
 
 CELL = Path(__file__).parents[3] / "behaviors" / "cells" / "ur10.yaml"
-_HOSTS = count(2)
 
 
 @dataclass
@@ -55,7 +53,7 @@ class EmulatedProcess:
 def emulated_device(kind: str, connection: str = "", **options: object) -> Generator[EmulatedProcess]:
     """Start an emulator on a loopback address of its own."""
     # All of 127/8 is this machine; a pty has no address, and its side channel a free port of the usual one.
-    host = f"127.{20 + os.getpid() % 200}.{next(_HOSTS) % 250 + 1}.1"
+    host = own_address()
     given = [f"{name}={str(value).lower() if isinstance(value, bool) else value}" for name, value in options.items()]
     given += [f"connection={connection}"] if connection else []
     side_host = str(options.get("host", host if connection != "serial" else "127.0.0.1"))

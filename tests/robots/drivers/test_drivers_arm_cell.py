@@ -43,6 +43,7 @@ robots:
     base: {{xyz: [0.0, 2.5, 0.0], rpy: [0.0, 0.0, 1.5707963]}}
     driver: {driver}
     outputs: {{gripper: 3}}
+    inputs: {{door: 5}}
 """
 BEHAVIOR = """\
 flexcell: 1
@@ -98,7 +99,15 @@ root:
       output:
         state: io.SetOutput
         with: {robot: right, device: gripper, value: true}
-        transitions: {set: other, failed: failed}
+        transitions: {set: door, failed: failed}
+      door:
+        state: io.WaitForInput
+        with: {robot: right, name: door, timeout_s: 100.0}
+        transitions: {reached: open, timeout: failed, unknown: failed}
+      open:
+        state: io.ReadInput
+        with: {robot: right, input: 4}
+        transitions: {"on": failed, "off": other, unknown: failed}
       other:
         state: motion.MoveJoints
         with: {robot: left, target: [0.2, -1.4, 1.6, -1.7, -1.5, 0.1], speed: 0.5}
@@ -131,6 +140,7 @@ def test_a_behavior_moves_a_real_and_a_simulated_arm_once_a_person_permits_it(tm
         assert "motion is not enabled" in refused.stdout + refused.stderr
         assert controller.state()["q"] == pytest.approx(START.tolist())
 
+        controller.ask("digital_input", bit=5, value=1)
         run = flexcell("run", "tour.yaml", "--enable", "the bench is clear", cwd=tmp_path)
         assert (run.returncode, run.stderr[-2000:]) == (0, run.stderr[-2000:])
         state = controller.wait("at_rest")
@@ -146,6 +156,11 @@ def test_a_behavior_moves_a_real_and_a_simulated_arm_once_a_person_permits_it(tm
 def test_a_real_arm_is_read_by_the_command_line_without_being_commanded(tmp_path: Path, client: str) -> None:
     with EmulatedController() as controller:
         written(tmp_path, controller.host, client=client)
+        controller.ask("digital_input", bit=5, value=1)
+        assert (
+            "inputs on: 5 of 0 to 9\n  outputs on: none of 0 to 9"
+            in flexcell("devices", "cell.yaml", cwd=tmp_path).stdout
+        )
         listed = flexcell("devices", "cell.yaml", "--json", cwd=tmp_path)
         (report,) = json.loads(listed.stdout)
         assert (listed.returncode, report["device"], report["fault"]) == (0, "right", "")

@@ -68,7 +68,7 @@ from tests.robots.drivers.emulated_gripper import emulated as emulated_gripper
 from tests.robots.drivers.emulated_hand import emulated_hand
 from tests.robots.drivers.servo_arm.emulated_arm import emulated_servo_arm, enabled, read
 from tests.robots.drivers.universal_robots.emulated_controller import EmulatedController
-from tests.robots.reconcell.reconcell_address import own_address
+from tests.robots.own_address import own_address
 
 FOLDER = Path(__file__).parent / "captures"
 _EPOCH_NS = 1_790_000_000_000_000_000

@@ -23,8 +23,8 @@ from robots.io.wire.wire_capture import NO_CAPTURE, WireCapture
 from robots.port import ArmPort
 from robots.reconcell import InterfaceOptions, ReconcellClient, ReconcellServer
 from robots.simulated_cell import new_world
+from tests.robots.own_address import own_address
 from tests.robots.reconcell.primitives_184 import HOME
-from tests.robots.reconcell.reconcell_address import own_address
 
 CELL = """\
 flexcell: 1

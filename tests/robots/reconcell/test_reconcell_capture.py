@@ -13,8 +13,8 @@ from robots.io.wire.read_capture import read_capture
 from robots.io.wire.wire_capture import WireCapture
 from robots.reconcell import ReconcellClient
 from tests.robots.drivers.emulated_device import replayed
+from tests.robots.own_address import own_address
 from tests.robots.reconcell.primitives_184 import HOME
-from tests.robots.reconcell.reconcell_address import own_address
 from tests.robots.reconcell.reconcell_cell import reconcell_cell
 
 

@@ -27,8 +27,8 @@ from robots.reconcell.packets import KERNELS, KernelRow
 from robots.reconcell.primitive_parameters import KernelRows
 from robots.reconcell.reconcell_server import new_reconcell_server
 from tests.robots.arm.served import served
+from tests.robots.own_address import own_address
 from tests.robots.reconcell.primitives_184 import cart_dmp
-from tests.robots.reconcell.reconcell_address import own_address
 
 
 def read_all(

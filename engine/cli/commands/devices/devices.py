@@ -86,6 +86,7 @@ def _text(report: DeviceReport) -> str:
         lines += [f"state: {report.state}", f"fault: {report.fault or 'none'}"]
         lines += [f"firmware: {report.firmware or 'the device does not report it'}"]
         lines += [f"{name}: {value:g}" for name, value in report.readings.items()]
+        lines += [_digital("inputs", report.inputs), _digital("outputs", report.outputs)]
         trip = report.round_trip
         if trip is not None:
             times = "/".join(f"{1e3 * value:.1f}" for value in (trip.min_s, trip.median_s, trip.max_s))
@@ -93,7 +94,13 @@ def _text(report: DeviceReport) -> str:
         offset = report.clock_offset_s
         lines.append(f"clock offset: {f'{1e3 * offset:.1f} ms' if offset is not None else 'the device has no clock'}")
     lines += [f"can do: {', '.join(report.capabilities)}", f"proven: {report.proven}"]
-    return "\n  ".join(lines) + "\n"
+    return "\n  ".join(line for line in lines if line) + "\n"
+
+
+def _digital(what: str, values: tuple[bool, ...]) -> str:
+    """Return which digital inputs or outputs are on; empty for a device without them."""
+    on = [str(number) for number, value in enumerate(values) if value]
+    return f"{what} on: {', '.join(on) or 'none'} of 0 to {len(values) - 1}" if values else ""
 
 
 def _print_drivers(*, json: bool) -> None:

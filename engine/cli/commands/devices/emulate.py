@@ -46,9 +46,6 @@ async def _serve(chosen: Emulator, options: EmulatorOptions) -> None:
         await task
     except asyncio.CancelledError:
         return
-    except OSError as error:
-        hint = "choose another host or port; port=0 takes a free one"
-        raise FlexcellError(f"cannot listen: {error.strerror or error}", hint=hint) from error
 
 
 def _ready(place: Mapping[str, object]) -> None:

@@ -55,6 +55,11 @@ class EgmArmConnection:
         return self._switch
 
     @property
+    def inputs(self) -> None:
+        """None: signals of the controller are not read."""
+        return
+
+    @property
     def problem(self) -> str:
         """Why the arm may not move at present; as Robot Web Services name it, where they know the cause."""
         problem, cause = self._process.problem, self._cause

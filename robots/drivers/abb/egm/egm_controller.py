@@ -103,6 +103,8 @@ class EgmController:
             raise MotionRefused("the load cannot be set from here", hint="define it in the tooldata of the controller")
         self._is_enabled = False
         end_s, steady = time.monotonic() + self._options.start_s, 0
+        # What is answered becomes a set point: one measurement that cannot be must not.
+        resting_deg = np.median([self._next_measurement().measured_deg for _ in range(_STEADY)], axis=0)
         while steady < _STEADY:
             measurement = self._next_measurement()
             fault = _fault(measurement)
@@ -114,6 +116,10 @@ class EgmController:
                     f"{cause.value}: guided motion does not start within {self._options.start_s:g} s",
                     hint=REMEDIES[cause],
                 )
+            off_deg = float(np.abs(np.subtract(measurement.measured_deg, resting_deg)).max())
+            if not off_deg < _HELD_DEG:
+                steady = 0
+                continue
             self._answer(held_deg(measurement) or measurement.measured_deg)
             steady = steady + 1 if measurement.mci is MciState.RUNNING else 0
         self._is_enabled = True

@@ -225,10 +225,14 @@ class EgmSource(asyncio.DatagramProtocol):
         packet = encode_measurement(self._measurement())
         sent = spoil(packet) if shared.garbage or own.wire.garbage else packet
         late_s = max(shared.slow_s, own.wire.slow_s)
-        asyncio.get_running_loop().call_later(late_s, self._transport.sendto, sent, self._client)
+        asyncio.get_running_loop().call_later(late_s, self._send_late, sent)
         if own.repeats and self._previous:
             self._transport.sendto(self._previous, self._client)
         self._previous = packet
+
+    def _send_late(self, packet: bytes) -> None:
+        if self._transport is not None and not self._transport.is_closing():
+            self._transport.sendto(packet, self._client)
 
     def _measurement(self) -> EgmMeasurement:
         measured = self._controller.plant.measured()[0]

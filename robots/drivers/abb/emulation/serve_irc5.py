@@ -251,12 +251,12 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
     )
     executed = ControllerFaults(controller, gripper, ports, faults, panel=panel, rws=rws, egm=egm).execute
     side = SideChannel(executed, host=host, port=options.side_port)
-    for port in ports.values():
-        await port.open()
-    await egm.open(host)
-    places = {f"{name}_port": port.port for name, port in ports.items()}
-    ready({"host": host, **places, "side_port": await side.open()})
     try:
+        for port in ports.values():
+            await port.open()
+        await egm.open(host)
+        places = {f"{name}_port": port.port for name, port in ports.items()}
+        ready({"host": host, **places, "side_port": await side.open()})
         # Axes of its own follow when somebody asks; those of a world need their set points.
         while plant.arm is not None:
             controller.advance()

@@ -13,10 +13,10 @@ from robots.drivers.franka.emulation.command_link import CommandLink
 from robots.drivers.franka.emulation.franka_emulator import FrankaEmulatorOptions
 from robots.drivers.franka.emulation.hand_rules import HAND_HEADER, HandRules
 from robots.drivers.franka.emulation.link_state import LinkState
-from robots.drivers.franka.emulation.simulated_robot import SimulatedRobot, single_robot
+from robots.drivers.franka.emulation.simulated_robot import PORTS, SimulatedRobot, single_robot
 from robots.drivers.franka.franka_faults import FrankaMode
 
-ARM_PORT, HAND_PORT = 1337, 1338
+ARM_PORT, HAND_PORT = PORTS
 _MODES = {
     "user_stop": FrankaMode.USER_STOPPED,
     "guiding": FrankaMode.GUIDING,

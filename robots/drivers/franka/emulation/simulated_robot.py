@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import socket
 import sys
 from importlib.util import find_spec
 
@@ -14,6 +15,8 @@ from robots.drivers.franka.emulation.simulator_messages import RobotReport, Robo
 
 _MAIN = "from robots.drivers.franka.emulation.simulator_main import main; main()"
 _END_S = 5.0
+PORTS = (1337, 1338)
+"""Of arm and hand."""
 
 
 class RobotSimulator:
@@ -31,13 +34,16 @@ class RobotSimulator:
         """Start it, if it does not run, and return when it listens.
 
         Raises:
-            CellError: franky-sim is not installed, or ends.
+            CellError: franky-sim is not installed, cannot listen, or ends.
         """
         if self._process is not None:
             return
         if find_spec("franky_sim") is None:
             hint = "pip install 'flexcell[franka_sim]': Linux x86-64"
             raise CellError("the emulator of a Franka needs the package franky-sim", hint=hint)
+        for robot in self._setup.robots:
+            for port in PORTS:
+                _check_free(robot.host, port)
         setup = msgspec.json.encode(self._setup).decode()
         self._process = process = await asyncio.create_subprocess_exec(
             sys.executable, "-c", _MAIN, setup, stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE
@@ -45,8 +51,9 @@ class RobotSimulator:
         assert process.stdout is not None
         line = await process.stdout.readline()
         if not line:
-            hosts = ", ".join(robot.host for robot in self._setup.robots)
-            raise CellError(f"franky-sim has ended: is {hosts} in use?", hint="choose another `host`")
+            code = await process.wait()
+            hint = "its own output above says why"
+            raise CellError(f"franky-sim has ended with {code} before it was ready", hint=hint)
         self._take(line, after_s=0.0)
         self._reading = asyncio.create_task(self._read(process.stdout))
 
@@ -101,6 +108,17 @@ class SimulatedRobot:
             self.travel_m += moved_m
         self.width_m = report.width_m
         self.joints_rad, self.fastest_rad_s = report.position_rad, report.fastest_rad_s
+
+
+def _check_free(host: str, port: int) -> None:
+    """Raise CellError if nothing can listen there; franky-sim says of two addresses only that both are of no use."""
+    with socket.socket() as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind((host, port))
+        except OSError as error:
+            hint = "another emulator may be there, `ss -ltnp` names it: end it, or choose another `host`"
+            raise CellError(f"franky-sim cannot listen at {host}:{port}: {error.strerror}", hint=hint) from error
 
 
 def single_robot(host: str) -> SimulatedRobot:

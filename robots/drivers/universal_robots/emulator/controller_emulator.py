@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import OrderedDict
 from collections.abc import AsyncGenerator
-from contextlib import asynccontextmanager
+from contextlib import ExitStack, asynccontextmanager
 from dataclasses import dataclass
 
 from robots.drivers.emulation.plant import ALONE, Plant
@@ -54,19 +54,14 @@ class ControllerEmulator:
         """Listen on all ports."""
         loop = asyncio.get_running_loop()
         scripts = script_port(self._start_program, self._faults)
-        servers = [
-            await loop.create_server(self._rtde.new_session, host, ports.rtde),
-            await asyncio.start_server(
-                dashboard_port(self._dashboard.answer, self._faults, banner=BANNER), host, ports.dashboard
-            ),
-            *[await asyncio.start_server(scripts, host, port) for port in ports.scripts],
-            await asyncio.start_server(self._side_channel.serve, host, ports.side_channel),
-        ]
-        try:
+        dashboard = dashboard_port(self._dashboard.answer, self._faults, banner=BANNER)
+        handlers = [(dashboard, ports.dashboard), *((scripts, port) for port in ports.scripts)]
+        handlers.append((self._side_channel.serve, ports.side_channel))
+        with ExitStack() as servers:
+            servers.callback((await loop.create_server(self._rtde.new_session, host, ports.rtde)).close)
+            for handler, port in handlers:
+                servers.callback((await asyncio.start_server(handler, host, port)).close)
             yield
-        finally:
-            for server in servers:
-                server.close()
 
     async def run(self) -> None:
         """Execute cycles in the time of the plant, which is real time without a world, until cancelled."""

@@ -122,6 +122,7 @@ class ControllerSideChannel:
         controller = self._controller
         return {
             "time_s": controller.time_s,
+            "written_s": controller.written_s,
             "q": controller.arm.measured_q.tolist(),
             "qd": controller.arm.measured_qd.tolist(),
             "tcp_pose": controller.arm.measured_tcp_pose(),

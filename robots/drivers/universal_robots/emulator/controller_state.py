@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from enum import IntEnum
@@ -106,6 +107,11 @@ class ControllerState:
     def robot_status_bits(self) -> int:
         """RTDE variable `robot_status_bits`: power, program running."""
         return int(self.safety.is_powered) | (self.program is not None) << 1
+
+    @property
+    def written_s(self) -> float:
+        """When a client has written an input last, by its own time; minus infinity before the first time."""
+        return max(self._written_s.values(), default=-math.inf)
 
     def note_input(self, name: str) -> None:
         """Note that a client has written an input: it is what a watchdog waits for."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from collections.abc import AsyncGenerator, Generator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass
-from itertools import count
 from typing import Any
 
 import msgspec
@@ -28,12 +26,12 @@ from robots.model import RobotModel, robot_model
 from robots.port import Array, JointTrajectory, Tolerance
 from tests.engine.cli.command import FLEXCELL
 from tests.robots.drivers.emulated_gripper import EmulatedProcess
+from tests.robots.own_address import own_address
 
 ARM = "arm"
 HOME = (0.0, 0.0, 0.0, 0.0, 0.5, 0.0)
 TOLERANCE = Tolerance(path_rad=0.05, goal_rad=0.005)
 EGM_PORT = 6510
-_HOSTS = count(2)
 
 
 @dataclass
@@ -59,7 +57,7 @@ class EmulatedIrc5(EmulatedProcess):
 @contextmanager
 def emulated(*, egm: bool = False, **options: object) -> Generator[EmulatedIrc5]:
     """Start an emulator on a loopback address of its own."""
-    host = f"127.{20 + os.getpid() % 200}.{next(_HOSTS) % 250 + 1}.2"
+    host = own_address()
     given = [f"egm_client={host}:{EGM_PORT}"] if egm else []
     given += [f"host={host}", *(f"{name}={value}" for name, value in options.items())]
     with subprocess.Popen([FLEXCELL, "emulate", "abb_irc5", *given], stdout=subprocess.PIPE, text=True) as process:

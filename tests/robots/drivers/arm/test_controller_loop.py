@@ -81,8 +81,8 @@ class ControllerInMemory:
 class Arm:
     """A loop on such a controller, and the ends of its motions."""
 
-    def __init__(self) -> None:
-        self.controller = ControllerInMemory()
+    def __init__(self, controller: ControllerInMemory | None = None) -> None:
+        self.controller = controller or ControllerInMemory()
         self.loop = ControllerLoop(
             name="arm",
             model=MODEL,

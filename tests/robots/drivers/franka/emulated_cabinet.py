@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import subprocess
 from collections.abc import AsyncGenerator, Generator
 from contextlib import asynccontextmanager, contextmanager
 from importlib.util import find_spec
-from itertools import count
 
 import msgspec
 import numpy as np
@@ -25,6 +23,7 @@ from robots.port import Array
 from robots.scene.sim_scene import ArmPlacement
 from tests.engine.cli.command import FLEXCELL
 from tests.robots.drivers.emulated_device import EmulatedProcess
+from tests.robots.own_address import own_address
 from tests.robots.sim.sim_cell import PATIENT_S, until
 
 FR3 = ArmPlacement(name="arm", model="fr3", base=Pose(xyz=(0.0, 0.0, 0.0)), gripper=None)
@@ -39,13 +38,12 @@ needs_franka = pytest.mark.skipif(
 )
 # A loaded machine may keep a process waiting for seconds; what is to be noticed sooner says so.
 PATIENT_OPTIONS = {"real_time": "ignore", "stale_s": 5.0, "process_silence_s": 10.0, "path_tolerance_rad": 0.4}
-_NUMBERS = count(1)
 
 
 @contextmanager
 def emulated_cabinet(**options: object) -> Generator[EmulatedProcess]:
     """Start an emulator on a loopback address of its own; the simulated robot behind it has another."""
-    host = f"127.{20 + os.getpid() % 100}.{next(_NUMBERS) % 250 + 1}.7"
+    host = own_address()
     given = [f"host={host}", *(f"{name}={str(value).lower()}" for name, value in options.items())]
     with subprocess.Popen([FLEXCELL, "emulate", "franka", *given], stdout=subprocess.PIPE, text=True) as process:
         try:

@@ -13,7 +13,7 @@ from robots.drivers.franka_hand.hand_protocol import (
     HandReply,
     HandRequest,
 )
-from tests.robots.drivers.universal_robots.emulated_controller import own_address
+from tests.robots.own_address import own_address
 
 LIMIT_S = 60.0
 

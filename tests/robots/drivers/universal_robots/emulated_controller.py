@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import json
-import os
 import select
 import socket
 import subprocess
@@ -13,15 +11,10 @@ from collections.abc import Mapping
 from types import TracebackType
 from typing import Any, Self
 
+from tests.robots.own_address import own_address
+
 ANSWER_LIMIT_S = 60.0
 """An answer that takes longer will not come; a machine of two busy cores is slow."""
-_numbers = itertools.count(1)
-
-
-def own_address() -> str:
-    """Return a loopback address that no other test has: the ports of controllers are fixed."""
-    process = os.getpid()
-    return f"127.{64 + (process >> 8) % 128}.{process % 256}.{next(_numbers) % 254 + 1}"
 
 
 def read_line(process: subprocess.Popen[bytes], what: str) -> Mapping[str, Any]:

@@ -13,7 +13,7 @@ import pytest
 from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_joint_controller import UrJointController
 from robots.drivers.universal_robots.ur_options import UrOptions
-from tests.robots.drivers.universal_robots.emulated_controller import own_address
+from tests.robots.own_address import own_address
 
 LIMIT_S = 20.0
 PROGRAM = "sec one():\n  sync()\nend\n"

@@ -264,6 +264,26 @@ async def test_outputs_are_set_and_read_back(client: str) -> None:
                 await outputs.confirmed()
 
 
+async def test_inputs_are_read_without_a_motion_and_unknown_once_the_controller_is_lost(client: str) -> None:
+    with EmulatedController() as controller:
+        async with connected(controller, client=client) as connection:
+            inputs = connection.inputs
+            assert inputs is not None
+            assert (inputs.count, inputs.values) == (10, (False,) * 10)
+            # Those of the tool are the bits 16 and 17, configurable ones are none of them.
+            for bit in (0, 7, 8, 17):
+                controller.ask("digital_input", bit=bit, value=1)
+            await until(lambda: [number for number, on in enumerate(inputs.values) if on] == [0, 7, 9])
+            assert (await connection.report(readings=1)).inputs == inputs.values
+            controller.ask("digital_input", bit=7, value=0)
+            await until(lambda: [number for number, on in enumerate(inputs.values) if on] == [0, 9])
+            controller.ask("cut")
+            await until(lambda: bool(inputs.problem))
+            assert (inputs.values, "link cut" in inputs.problem) == ((), True)
+            controller.ask("restore")
+            await until(lambda: inputs.values != () and inputs.values[0], within_s=60.0)
+
+
 def kill_engine(host: str, client: str) -> int:
     """Kill an engine whose arm moves, and return the id of its control process."""
     command = [sys.executable, str(ENGINE), host, client]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import socket
 import struct
 import subprocess
@@ -16,6 +15,7 @@ from robots.reconcell.reconcell_client import ReconcellClient
 from tests.engine.awaited import wait_until
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import started
+from tests.robots.own_address import own_address
 
 CELL = """\
 flexcell: 1
@@ -27,12 +27,6 @@ robots:
 """
 THERE = (0.1, -1.4, 1.5, -1.6, -1.5, 0.1)
 LIMIT_S = 60.0
-
-
-def own_address(number: int) -> str:
-    """Return a loopback address that no other test has: the ports are fixed."""
-    process = os.getpid()
-    return f"127.{224 + (process >> 8) % 16}.{process % 256}.{number}"
 
 
 def cell(folder: Path) -> Path:
@@ -54,7 +48,7 @@ def first_line(process: subprocess.Popen[str]) -> str:
 
 
 def test_a_program_moves_the_arm_and_ctrl_c_ends_the_server(tmp_path: Path) -> None:
-    address = own_address(1)
+    address = own_address()
     with (
         started(
             "reconcell", "serve", cell(tmp_path), "--robot", "ur10", "--address", address, "--receiver", address,
@@ -76,7 +70,7 @@ def test_a_program_moves_the_arm_and_ctrl_c_ends_the_server(tmp_path: Path) -> N
 
 def test_after_a_stop_of_the_cell_no_datagram_moves_the_arm_before_the_release(tmp_path: Path) -> None:
     """Beside a dashboard; the state is sent to 127.0.0.1, so that this test asks the bus."""
-    address = own_address(2)
+    address = own_address()
     arguments = ("serve", "--cell", cell(tmp_path), "--port", "0", "--reconcell", f"ur10={address}")
     with started(*arguments, cwd=tmp_path) as server, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         assert "Dashboard" in first_line(server)
@@ -104,8 +98,6 @@ def test_after_a_stop_of_the_cell_no_datagram_moves_the_arm_before_the_release(t
 
 
 def test_an_arm_that_the_packets_do_not_fit_is_an_error_in_one_line(tmp_path: Path) -> None:
-    seven = flexcell(
-        "reconcell", "serve", cell(tmp_path), "--robot", "panda", "--address", own_address(3), cwd=tmp_path
-    )
+    seven = flexcell("reconcell", "serve", cell(tmp_path), "--robot", "panda", "--address", own_address(), cwd=tmp_path)
     assert seven.code == 2
     assert seven.err.splitlines()[-1].startswith("flexcell: panda: panda has 7 joints")

@@ -1,0 +1,84 @@
+"""io.WaitForInput: waits until a digital input of a robot's controller is on, or off."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.errors import Cause
+from engine.state import Context, Outcome, State, nothing_to_undo
+from states.io.input_parameter_types import (
+    InputRobot,
+    NameOfInput,
+    NumberOfInput,
+    input_value,
+    require_one_name,
+    unknown_input,
+)
+
+
+class WaitForInput(State, frozen=True, kw_only=True):
+    """Wait until an input has a value; it ends at once where it has.
+
+    The input is given by its number (`input`) or by the name that the cell gives it (`name`). Inputs of real
+    controllers are read 100 times a second: a shorter pulse may be missed.
+    """
+
+    state_name: ClassVar[str] = "io.WaitForInput"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "timeout", "unknown")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+    undo = nothing_to_undo
+
+    robot: InputRobot
+    input: NumberOfInput | None = None
+    name: NameOfInput | None = None
+    value: Annotated[bool, Meta(description="Value to wait for: true for on")] = True
+    timeout_s: (
+        Annotated[
+            float, Meta(gt=0.0, description="Longest wait; without it there is none", extra_json_schema={"unit": "s"})
+        ]
+        | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        require_one_name(self.input, self.name)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Return that it has the value, the timeout, or why it is not known."""
+        waiting = asyncio.ensure_future(self._ended(ctx))
+        if self.timeout_s is None:
+            return self._ending(ctx, await waiting)
+        pause = asyncio.ensure_future(ctx.clock.sleep(self.timeout_s))
+        try:
+            await asyncio.wait((waiting, pause), return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            has_ended = waiting.done()
+            for task in (waiting, pause):
+                task.cancel()
+            await asyncio.wait((waiting, pause))
+        if has_ended:
+            return self._ending(ctx, waiting.result())
+        message = f"{self._what} was not {'on' if self.value else 'off'} within {self.timeout_s:g} s"
+        return Outcome("timeout", cause=Cause(message=message, where=ctx.path, kind=self.state_name))
+
+    @property
+    def _what(self) -> str:
+        return f"{self.name or f'input {self.input}'} of {self.robot}"
+
+    async def _ended(self, ctx: Context) -> str:
+        """Return once it has the value, or why it is not known."""
+        topic = f"{self.robot}/digital_inputs"
+        value = self._value(await ctx.latest_data(topic))
+        if value == (not self.value):
+            value = self._value(await ctx.next_data(topic, lambda data: self._value(data) != (not self.value)))
+        return value if isinstance(value, str) else ""
+
+    def _value(self, data: object) -> bool | str:
+        return input_value(data, self.input, self.name)
+
+    def _ending(self, ctx: Context, unknown: str) -> Outcome:
+        if unknown:
+            return Outcome("unknown", cause=unknown_input(unknown, self._what, where=ctx.path, kind=self.state_name))
+        return Outcome("reached")
