@@ -68,3 +68,8 @@ def test_selected_nodes_are_laid_out_among_themselves_and_the_others_stay(browse
         assert saved_view(page, shop) == view
         page.keyboard.press("Shift+L")
         expect(page.get_by_text("It is laid out already")).to_be_visible()
+        card(page, "root/set").locator("[data-head]").click(button="right")
+        menu = page.get_by_role("menu", name="Selected nodes")
+        # All of it fits, wherever the pointer is.
+        for name in ("Disable 2 nodes", "Auto-layout", "Delete"):
+            expect(menu.get_by_role("menuitem", name=name)).to_be_in_viewport(ratio=1)

@@ -13,7 +13,7 @@ from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array
 
 # Smallest gain of the distance after a step that counts as apart: beyond the rounding of the checks.
-_APART_M = 2e-4
+APART_M = 2e-4
 
 
 class DirectionsOut:
@@ -53,7 +53,7 @@ class DirectionsOut:
                         for (axis, sign), distance_m, touches in zip(
                             signs, found.distance_m[1:], found.touches_another[1:], strict=True
                         )
-                        if distance_m > start_m + _APART_M and not touches
+                        if distance_m > start_m + APART_M and not touches
                     ),
                     key=lambda each: (each.axis, -each.sign),
                 )

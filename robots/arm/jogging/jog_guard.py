@@ -16,7 +16,7 @@ from engine.skills.jogging import JogBlock, JogCollisionOptions
 from robots.arm.execution.collision_prediction import predict_collision
 from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.stopping_path import BRAKING_SHARE, REACTION_S
-from robots.arm.jogging.directions_out import DirectionsOut
+from robots.arm.jogging.directions_out import APART_M, DirectionsOut
 from robots.arm.jogging.press_queue import Row
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.planning.scene.planning_scene import NamePair
@@ -32,6 +32,9 @@ _SEARCH_TIMEOUT_S = 1.0
 _STEP_S, _LONGEST_S = 0.01, 3.0
 # Share of the free path that is used.
 _USED_SHARE = 0.9
+# Of a path that begins in contact so many samples apart are looked at.
+_EVERY = 5
+_ROUNDING_M = 1e-4
 # Below this share of the commanded velocity the arm stands still.
 _CREEP = 0.02
 # A velocity within 11 degrees of the checked direction counts as checked.
@@ -209,6 +212,10 @@ class JogGuard:
         found = await predict_collision(self._workspace, self._scene.check(path))
         if found is None:
             return float(np.linalg.norm(commanded)), "", None
+        if found.at_s == 0.0 and await self._takes_apart(path, found.pairs):
+            found = await predict_collision(self._workspace, self._scene.check(path, parting=found.pairs))
+            if found is None:
+                return float(np.linalg.norm(commanded)), "", None
         if found.is_unmonitored:
             return 0.0, found.reason, None
         # The free path ends at the sample before the first contact.
@@ -219,6 +226,22 @@ class JogGuard:
             found.reason,
             self._pair_of(found.pairs),
         )
+
+    async def _takes_apart(self, path: JointTrajectory, touching: Sequence[NamePair]) -> bool:
+        """Return whether a path that begins in contact takes all that touch apart, all the way.
+
+        Checks of paths let an arm leave a margin, but no contact: it may have been pressed, or have slipped, into one.
+        """
+        if not touching:
+            return False
+        rows = np.concatenate((path.position_rad[:-1:_EVERY], path.position_rad[-1:]))
+        try:
+            async with asyncio.timeout(_SEARCH_TIMEOUT_S):
+                gaps_m = [np.array((await self._scene.distances(rows, pair)).distance_m) for pair in touching]
+        except (TimeoutError, FlexcellError) as error:
+            _log.warning("%s: whether it goes out of a contact is not known: %s", self._runner.name, error)
+            return False
+        return all(bool((np.diff(gap_m) > -_ROUNDING_M).all()) and gap_m[-1] > gap_m[0] + APART_M for gap_m in gaps_m)
 
     def _pair_of(self, pairs: Sequence[NamePair]) -> NamePair | None:
         """Return the pair to tell: that of before while it is among them, as both fingers of a hand are in turn."""

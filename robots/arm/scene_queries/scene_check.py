@@ -27,8 +27,8 @@ class SceneCheck:
         self._workspace = workspace
         self._rule = rule
 
-    async def check(self, trajectory: JointTrajectory) -> PathCheck:
-        """Return where a trajectory is blocked in the current scene.
+    async def check(self, trajectory: JointTrajectory, *, parting: tuple[NamePair, ...] = ()) -> PathCheck:
+        """Return where a trajectory is blocked in the current scene, but for the pairs that it takes apart.
 
         Raises:
             RobotError: the planning process has ended.
@@ -36,7 +36,7 @@ class SceneCheck:
         """
         return await self._workspace.planners.check_path(
             PathCheckRequest(
-                scene=await self._current(),
+                scene=await self._current(parting),
                 arm=self._arm,
                 trajectory=trajectory,
                 from_s=0.0,
@@ -58,10 +58,10 @@ class SceneCheck:
             )
         )
 
-    async def _current(self) -> PlanningScene:
+    async def _current(self, allowed: tuple[NamePair, ...] = ()) -> PlanningScene:
         await self._workspace.ready()
         scene = self._workspace.scene_for(self._arm)
-        touched = tuple((self._arm, name) for name in self._rule.may_touch)
+        touched = (*((self._arm, name) for name in self._rule.may_touch), *allowed)
         return msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene
 
     async def require_free(self, trajectory: JointTrajectory) -> None:

@@ -229,6 +229,32 @@ async def test_a_block_names_both_bodies_their_distance_and_the_ways_that_take_t
 
 
 @pytest.mark.virtual
+async def test_an_arm_in_contact_goes_where_the_block_says_and_nowhere_else() -> None:
+    """A bar 3 mm inside of the hand: into it and along it is blocked, and out of it too where a post is."""
+    into, along, out = ((0.0, 0.1, 0.0), (0.1, 0.0, 0.0), (0.0, -0.1, 0.0))
+    async with fake_cell() as cell:
+        x, y, z = (await cell.bus.call(ForwardKinematics(), to="left")).xyz
+        await cell.bus.call(put("bar", (0.2, 0.02, 0.04), (x, y + 0.1115, z + 0.08)), to="cell")
+        blocks = cell.bus.topic("left/jog_block", JogBlock)
+
+        async def blocked_by(velocity: Vector3) -> str:
+            await cell.bus.send_goal(JogTool(velocity=(*velocity, 0.0, 0.0, 0.0), duration_s=0.6), to="left").result()
+            block = blocks.latest
+            assert block is not None
+            return block.second
+
+        assert await blocked_by(into) == "bar"
+        block = blocks.latest
+        assert block is not None
+        assert block.distance_m == 0.0
+        assert (1, -1) in {(each.axis, each.sign) for each in block.directions_out}
+        assert await blocked_by(along) == "bar"
+        assert not await blocked_by(out)
+        await cell.bus.call(put("post", (0.2, 0.02, 0.04), (x, y - 0.117, z + 0.08)), to="cell")
+        assert await blocked_by(out)
+
+
+@pytest.mark.virtual
 @pytest.mark.parametrize("fails", [False, True])
 async def test_a_block_has_no_distance_until_it_is_measured(fails: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Both bodies are named at once, and no distance or absence of a direction out is claimed."""

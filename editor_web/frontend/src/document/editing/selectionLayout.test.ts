@@ -24,8 +24,8 @@ function machineOf(arrows: readonly Arrow[], loose: readonly string[] = []): Edi
 /** The machine with its nodes at these places, and how it is drawn then. */
 async function putAt(machine: EditNode, places: ReadonlyMap<string, Point>): Promise<ReadonlyMap<string, Box>> {
   const children = machine.children.map((child) => {
-    const at = places.get(child.path)
-    return at ? { ...child, position: [at.x, at.y] as const } : child
+    const place = places.get(child.path)
+    return place ? { ...child, position: [place.x, place.y] as const } : child
   })
   const { boxes } = await arrange({ ...machine, children }, { isOpen: () => true, declared: () => [], rowLimit: ROW, call })
   return new Map(children.flatMap(({ path }): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])))

@@ -32,6 +32,9 @@ const SEVERAL = [
   ['duplicate', 'copy', 'cut', 'remove'],
 ] as const
 
+/** Where there is room neither below nor above the pointer, the menu lies on it. */
+const IN_WINDOW = { flip: false, shift: { crossAxis: true, padding: 8 } } as const
+
 export function NodeMenu() {
   const at = useEditor((s) => s.menu)
   const several = useEditor((s) => s.selection.length > 1)
@@ -39,11 +42,11 @@ export function NodeMenu() {
   const close = () => setEditor({ menu: undefined })
   const parts = (several ? SEVERAL : ONE).map((part) => part.flatMap((id) => shownCommand(id) ?? [])).filter((part) => part.length > 0)
   return (
-    <Menu opened onClose={close} position="bottom-start" offset={2} withinPortal shadow="md" returnFocus>
+    <Menu opened onClose={close} position="bottom-start" offset={2} middlewares={IN_WINDOW} withinPortal shadow="md" returnFocus>
       <Menu.Target>
         <Box component="span" pos="fixed" w={0} h={0} left={at.x} top={at.y} />
       </Menu.Target>
-      <Menu.Dropdown aria-label="Selected nodes">
+      <Menu.Dropdown aria-label="Selected nodes" mah="calc(100dvh - 16px)" style={{ overflowY: 'auto' }}>
         {parts.map((part, index) => (
           <Fragment key={part[0]?.id}>
             {index > 0 && <Menu.Divider />}
