@@ -31,7 +31,7 @@ HELD_HIGH = 5551188544323706
 def test_the_payload_stands_at_the_place_pose_wherever_it_stood_within_its_jitter(
     tmp_path: Path, seed: int | None
 ) -> None:
-    """Across the fingers it is centred by them; along them it stays up to 10 mm off, as it was. One that hangs low is felt."""
+    """Across the fingers it is centred by them; along them it stays up to 10 mm off, as it was. A low one is felt."""
     done = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), seed=seed)
     result = done.run(tmp_path)
     assert (result.outcome, causes(result)) == ("finished", "")
