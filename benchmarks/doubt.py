@@ -19,6 +19,7 @@ import msgspec
 
 from benchmarks.doubt_motions import FIGURES, measure_figure
 from engine.document import RealismName
+from engine.document.duration import seconds
 from engine.document.sweep import Sweep, parse_sweep
 from engine.sweep import (
     SweepEnd,
@@ -72,7 +73,8 @@ def run_application(sweep: Sweep, saved: SweepResults, *, workers: int, execute:
     planned = configurations(sweep)
     if not execute:
         return saved_sweep(subject, planned, saved)
-    return execute_sweep(subject, planned, saved, WorkerOptions(workers=workers), again=True, show=_progress)
+    options = WorkerOptions(workers=workers, timeout_s=seconds(sweep.document.timeout))
+    return execute_sweep(subject, planned, saved, options, again=True, show=_progress)
 
 
 def application_row(name: str, realism: RealismName, end: SweepEnd) -> str:

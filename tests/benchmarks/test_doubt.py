@@ -19,7 +19,7 @@ from benchmarks.doubt import (
     run_application,
 )
 from engine.document import RealismName
-from engine.sweep import SweepResults, SweepSubject, configurations
+from engine.sweep import SweepResults, SweepSubject, WorkerOptions, configurations
 
 
 def test_figures_that_are_saved_are_not_measured_again(
@@ -67,6 +67,21 @@ def test_the_seeds_of_an_application_are_executed_once_and_failures_have_their_c
     hung = replace(first, results=[failed, msgspec.structs.replace(failed, status="hung", outcome=None)])
     assert application_row("A4", "typical", hung).startswith("| A4 | typical | 0 of 1 |")
     assert failure_rows("A4", "typical", hung)[-1] == "| A4 | typical | 0 | hung | it slipped |"
+
+
+def test_a_busy_machine_ends_no_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A run gets hours of wall time, not the five minutes of other sweeps."""
+    given: list[WorkerOptions] = []
+
+    def execute(_subject: object, _planned: object, _saved: object, options: WorkerOptions, **_options: object) -> None:
+        given.append(options)
+
+    monkeypatch.setattr(doubt, "execute_sweep", execute)
+    with SweepResults.open(tmp_path / "runs.db") as saved:
+        run_application(
+            application_sweep(APPLICATIONS["A4 test cylinder"], "typical", 1), saved, workers=1, execute=True
+        )
+    assert [options.timeout_s for options in given] == [7200.0]
 
 
 def test_each_application_exists_and_its_seeds_are_its_own() -> None:

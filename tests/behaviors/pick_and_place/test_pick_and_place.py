@@ -23,14 +23,20 @@ PLACE_M = (-0.2, 0.98, 0.05)
 REST_RAD_S = 0.02
 
 
-@pytest.mark.parametrize("seed", [0, *map(nightly, (None, 1, 2, 3, 4))])
+# With this one the closing fingers, as they centre the payload, lift the arm so far that they hold it 5 mm too high.
+HELD_HIGH = 5551188544323706
+
+
+@pytest.mark.parametrize("seed", [0, HELD_HIGH, *map(nightly, (None, 1, 2, 3, 4))])
 def test_the_payload_stands_at_the_place_pose_wherever_it_stood_within_its_jitter(
     tmp_path: Path, seed: int | None
 ) -> None:
-    """Across the fingers it is centred by them; along them it stays up to 10 mm off, as it was."""
+    """Across the fingers it is centred by them; along them it stays up to 10 mm off, as it was. A low one is felt."""
     done = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), seed=seed)
     result = done.run(tmp_path)
     assert (result.outcome, causes(result)) == ("finished", "")
+    if seed == HELD_HIGH:
+        assert "root/place/touch contact" in done.left
     x, y, z = done.last("payload").xyz
     assert math.hypot(x - PLACE_M[0], y - PLACE_M[1]) < 0.015
     assert z == pytest.approx(PLACE_M[2], abs=0.001)

@@ -37,7 +37,7 @@ def test_it_ends_with_the_cylinder_in_its_rack_wherever_it_is_killed(tmp_path: P
 
 @pytest.mark.parametrize(
     ("stage", "event"),
-    [nightly("root/pick/grip", 33), ("root/water/rinse", 71)],
+    [nightly("root/pick/grip", 39), ("root/water/rinse", 77)],
 )
 def test_flexcell_resume_goes_on_in_the_stage_it_was_killed_in(tmp_path: Path, stage: str, event: int) -> None:
     """No stage that had ended is done again, and none is left out."""

@@ -19,7 +19,11 @@ OUTLET_M = (0.18, 0.135)
 REST_RAD_S = 0.02
 
 
-@pytest.mark.parametrize("seed", [None, *map(nightly, (0, 1, 2, 3, 4))])
+# As the cylinder leans after this one, the claw met its top where it swung aside with its elbow already lower.
+LEANS = 8329704657977214
+
+
+@pytest.mark.parametrize("seed", [None, LEANS, *map(nightly, (0, 1, 2, 3, 4))])
 def test_the_cylinder_is_held_under_the_water_and_stands_in_its_rack_again(tmp_path: Path, seed: int | None) -> None:
     """Three seconds within 5 mm of the outlet's axis; in the end upright, 5 mm from its place at most."""
     done = Application(behavior=BEHAVIOR, cell=shipped_cell(CELL), seed=seed)
