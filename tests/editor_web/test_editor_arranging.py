@@ -47,7 +47,7 @@ def test_selected_nodes_are_laid_out_among_themselves_and_the_others_stay(browse
         card(page, "root/first").click()
         card(page, "root/set").click(modifiers=["Shift"])
         bar = page.get_by_role("toolbar", name="Selected nodes")
-        expect(bar).to_contain_text("2 chosen")
+        expect(bar).to_contain_text("2 selected")
         bar.get_by_role("button", name="Auto-layout of the selected nodes (Shift+L)").click()
         idle(page)
         boxes = boxes_on_screen(page)

@@ -134,7 +134,7 @@ function Several({ count }: { count: number }) {
   return (
     <>
       <Text span size="xs" fw={600} px="xs" style={{ whiteSpace: 'nowrap' }}>
-        {count} chosen
+        {count} selected
       </Text>
       <Tool label="Group into a machine" command="group" onPress={() => void group('machine')}>
         <IconBoxMultiple size={16} />
