@@ -39,10 +39,10 @@ async def _measure(name: str, motions: int, *, seed: int) -> tuple[GarbageOutcom
 
 def _row(name: str, outcome: GarbageOutcome, seconds: float) -> str:
     ends = ", ".join(f"{count} {end}" for end, count in outcome.ends.most_common())
-    rests = sorted(outcome.rest_s) or [0.0]
+    times_s = sorted(outcome.rest_s) or [0.0]
     return (
         f"| {name} | {outcome.ends.total()} | {outcome.garbage:,} | {ends} | {outcome.off_rad:.4f} |"
-        f" {outcome.fastest_share:.2f} | {rests[len(rests) // 2]:.2f}, {rests[-1]:.2f} | {seconds:.0f} |"
+        f" {outcome.fastest_share:.2f} | {times_s[len(times_s) // 2]:.2f}, {times_s[-1]:.2f} | {seconds:.0f} |"
     )
 
 

@@ -119,7 +119,7 @@ async def _move(arm: MovedArm, outcome: GarbageOutcome, goal: Array, *, share: f
     report = await reporting
     arm.spoil(0.0)
     limit_s = states[-1].time_s + _REST_LIMIT_S
-    while report.end is not MotionEnd.REACHED and not _rests(states) and states[-1].time_s < limit_s:
+    while report.end is not MotionEnd.REACHED and not _is_at_rest(states) and states[-1].time_s < limit_s:
         states.append(await asyncio.to_thread(arm.state))
     _judge(arm, outcome, states, goal=goal, has_failed=report.end is not MotionEnd.REACHED)
     if report.end is MotionEnd.REACHED:
@@ -148,7 +148,7 @@ def _judge(arm: MovedArm, outcome: GarbageOutcome, states: list[TrueState], *, g
         outcome.rest_s.append(max(0.0, moving_s - states[-1].ended_s))
 
 
-def _rests(states: list[TrueState]) -> bool:
+def _is_at_rest(states: list[TrueState]) -> bool:
     """Whether the true joints have rested for the last 0.2 s."""
     last = states[-1]
     recent = [each for each in states if each.time_s > last.time_s - 0.2]
