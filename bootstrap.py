@@ -61,7 +61,7 @@ NODE_OPTIONS = "--max-semi-space-size=64"
 # what the tests of a file share is made once, and none waits for the other.
 PYTEST = ["-m", "pytest", "-n", "2", "--dist", "worksteal", "-q"]
 # Docs and decision: docs/decisions/0079-costly-tests-take-turns.md
-TURNS = 4
+TURNS = 5
 # The first has no windows of its own, whose pages cost as much as the one that is tested.
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
