@@ -128,11 +128,9 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each == "cell/parts")
         case "occupancy":
             return tuple(each for each in known if each.startswith("cell/occupancy"))
-        case "frame":
-            return tuple(each for each in known if each == "cell/frames")
         case "world":
             return tuple(each for each in known if each in ("cell/frames", "cell/planning_scene"))
-        case "fixture" | "person" | "store":
+        case "fixture" | "frame" | "person" | "store":
             return ()
 
 

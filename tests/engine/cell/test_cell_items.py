@@ -33,6 +33,7 @@ parts:
     mass_kg: 0.1
 cameras:
   eye: {at: [0, 0, 1], look_at: [0, 0, 0]}
+frames: {slot: {parent: table}}
 """
 TOPICS = ("cell/parts", "cell/frames", "eye/depth", "left/gripper/state", "left/status", "left2/status", "right/status")
 
@@ -58,6 +59,7 @@ def test_every_item_is_there_in_the_order_of_the_kinds(cell: Cell) -> None:
         ("robots/right", "robot", "ur10", ""),
         ("fixtures/table", "fixture", "box", ""),
         ("parts/plate", "part", "box", ""),
+        ("frames/slot", "frame", "in table", ""),
         ("cameras/eye", "camera", "sim", ""),
         ("world", "world", "mujoco", ""),
     ]
