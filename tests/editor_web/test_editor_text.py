@@ -58,7 +58,8 @@ def test_only_the_edited_lines_of_a_file_change(browser: Browser, shop: Workshop
         # It is out of sight: selected by the keyboard.
         card(page, "root/preplace").focus()
         page.keyboard.press("Enter")
-        page.get_by_label("failed leads to").select_option("home_empty")
+        form = page.get_by_label("Form of preplace")
+        form.get_by_label("failed leads to").select_option("home_empty")
         idle(page)
         save(page)
         gone, came = changed_lines(before, file_text(shop, PLATE_ID))
