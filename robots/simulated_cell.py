@@ -12,8 +12,9 @@ from engine.clock import Clock
 from engine.document import Cell
 from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
-from robots.arm.services.input_services import InputServices, require_inputs
-from robots.arm.services.output_services import OutputServices, require_outputs
+from robots.arm.services.input_services import InputServices
+from robots.arm.services.numbered_signals import require_signals
+from robots.arm.services.output_services import OutputServices
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.host.process_host import NewStopLine
@@ -108,7 +109,7 @@ def _outputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> OutputServ
     """Return the outputs of an arm, None without any; raises CellError where the cell names a missing output."""
     name, port = placement.name, world.outputs(placement.name)
     count = len(port.values) if port is not None else 0
-    uses = require_outputs(cell, name, count=count, owner=f"a {placement.robot().name}")
+    uses = require_signals(cell, name, "output", count=count, owner=f"a {placement.robot().name}")
     return OutputServices(name, port, uses=uses) if port is not None else None
 
 
@@ -116,5 +117,5 @@ def _inputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> InputServic
     """Return the inputs of an arm, None without any; raises CellError where the cell names a missing input."""
     name, port = placement.name, world.inputs(placement.name)
     count = port.count if port is not None else 0
-    names = require_inputs(cell, name, count=count, owner=f"a {placement.robot().name}")
+    names = require_signals(cell, name, "input", count=count, owner=f"a {placement.robot().name}")
     return InputServices(name, port, names=names, simulate=port.simulate) if port is not None else None

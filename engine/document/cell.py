@@ -140,6 +140,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
         poses = poses_in_world(self.frames, self.fixtures)
+        named = {name: poses[name] for name in self.frames}
         return replace(
             self,
             robots={name: replace(robot, base=robot.base.in_world(poses)) for name, robot in self.robots.items()},
@@ -148,7 +149,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
             unknown_bodies={
                 name: replace(body, at=body.at.in_world(poses)) for name, body in self.unknown_bodies.items()
             },
-            cameras={name: camera.in_frames(self.fixed_frames) for name, camera in self.cameras.items()},
+            cameras={name: camera.in_frames(named) for name, camera in self.cameras.items()},
         )
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
@@ -12,6 +11,7 @@ from engine.errors import Cause
 from engine.state import Context, Outcome, State, nothing_to_undo
 from states.bus.bus_parameter_types import MessageCondition, TopicName
 from states.bus.message_condition import compile_condition
+from states.time_limit import LongestWait, ended_within
 
 
 class WaitForMessage(State, frozen=True, kw_only=True):
@@ -30,12 +30,7 @@ class WaitForMessage(State, frozen=True, kw_only=True):
 
     topic: TopicName
     condition: MessageCondition = ""
-    timeout_s: (
-        Annotated[
-            float, Meta(gt=0.0, description="Longest wait; without it there is none", extra_json_schema={"unit": "s"})
-        ]
-        | None
-    ) = None
+    timeout_s: LongestWait | None = None
     accept_latest: Annotated[
         bool, Meta(description="Whether a message from before the state was entered may meet the condition")
     ] = False
@@ -45,19 +40,13 @@ class WaitForMessage(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Return the message, or the timeout."""
-        if self.timeout_s is None:
-            return Outcome("received", {"message": await self._message(ctx)})
-        reading = asyncio.ensure_future(self._message(ctx))
-        pause = asyncio.ensure_future(ctx.clock.sleep(self.timeout_s))
         try:
-            await asyncio.wait((reading, pause), return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            ended = reading.done()
-            for task in (reading, pause):
-                task.cancel()
-            await asyncio.wait((reading, pause))
-        if ended:
-            return Outcome("received", {"message": reading.result()})
+            received = await ended_within(ctx, self._message(ctx), self.timeout_s)
+        except TimeoutError:
+            return self._timeout(ctx)
+        return Outcome("received", {"message": received})
+
+    def _timeout(self, ctx: Context) -> Outcome:
         matching = f" with {self.condition}" if self.condition else ""
         message = f"{self.topic} had no message{matching} within {self.timeout_s:g} s"
         return Outcome("timeout", cause=Cause(message=message, where=ctx.path, kind=self.state_name))

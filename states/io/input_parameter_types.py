@@ -33,6 +33,11 @@ def require_one_name(number: int | None, name: str | None) -> None:
         raise ValueError("give either `input` or `name`")
 
 
+def input_words(robot: str, number: int | None, name: str | None) -> str:
+    """Return an input as messages call it."""
+    return f"{name or f'input {number}'} of {robot}"
+
+
 def input_value(message: object, number: int | None, name: str | None) -> bool | str:
     """Return the value of an input in a message of `digital_inputs` as plain data, or why it is not known."""
     state = msgspec.convert(message, DigitalInputs)

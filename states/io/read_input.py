@@ -12,6 +12,7 @@ from states.io.input_parameter_types import (
     NameOfInput,
     NumberOfInput,
     input_value,
+    input_words,
     require_one_name,
     unknown_input,
 )
@@ -41,7 +42,7 @@ class ReadInput(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         """Return whether it is on."""
         value = input_value(await ctx.latest_data(f"{self.robot}/digital_inputs"), self.input, self.name)
-        what = f"{self.name or f'input {self.input}'} of {self.robot}"
+        what = input_words(self.robot, self.input, self.name)
         if isinstance(value, str):
             return Outcome("unknown", cause=unknown_input(value, what, where=ctx.path, kind=self.state_name))
         if value:

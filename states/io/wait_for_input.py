@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated, ClassVar
 
 from msgspec import Meta
@@ -14,9 +13,11 @@ from states.io.input_parameter_types import (
     NameOfInput,
     NumberOfInput,
     input_value,
+    input_words,
     require_one_name,
     unknown_input,
 )
+from states.time_limit import LongestWait, ended_within
 
 
 class WaitForInput(State, frozen=True, kw_only=True):
@@ -35,37 +36,25 @@ class WaitForInput(State, frozen=True, kw_only=True):
     input: NumberOfInput | None = None
     name: NameOfInput | None = None
     value: Annotated[bool, Meta(description="Value to wait for: true for on")] = True
-    timeout_s: (
-        Annotated[
-            float, Meta(gt=0.0, description="Longest wait; without it there is none", extra_json_schema={"unit": "s"})
-        ]
-        | None
-    ) = None
+    timeout_s: LongestWait | None = None
 
     def __post_init__(self) -> None:
         require_one_name(self.input, self.name)
 
     async def run(self, ctx: Context) -> Outcome:
         """Return that it has the value, the timeout, or why it is not known."""
-        waiting = asyncio.ensure_future(self._ended(ctx))
-        if self.timeout_s is None:
-            return self._ending(ctx, await waiting)
-        pause = asyncio.ensure_future(ctx.clock.sleep(self.timeout_s))
         try:
-            await asyncio.wait((waiting, pause), return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            has_ended = waiting.done()
-            for task in (waiting, pause):
-                task.cancel()
-            await asyncio.wait((waiting, pause))
-        if has_ended:
-            return self._ending(ctx, waiting.result())
-        message = f"{self._what} was not {'on' if self.value else 'off'} within {self.timeout_s:g} s"
-        return Outcome("timeout", cause=Cause(message=message, where=ctx.path, kind=self.state_name))
+            unknown = await ended_within(ctx, self._ended(ctx), self.timeout_s)
+        except TimeoutError:
+            message = f"{self._what} was not {'on' if self.value else 'off'} within {self.timeout_s:g} s"
+            return Outcome("timeout", cause=Cause(message=message, where=ctx.path, kind=self.state_name))
+        if unknown:
+            return Outcome("unknown", cause=unknown_input(unknown, self._what, where=ctx.path, kind=self.state_name))
+        return Outcome("reached")
 
     @property
     def _what(self) -> str:
-        return f"{self.name or f'input {self.input}'} of {self.robot}"
+        return input_words(self.robot, self.input, self.name)
 
     async def _ended(self, ctx: Context) -> str:
         """Return once it has the value, or why it is not known."""
@@ -77,8 +66,3 @@ class WaitForInput(State, frozen=True, kw_only=True):
 
     def _value(self, data: object) -> bool | str:
         return input_value(data, self.input, self.name)
-
-    def _ending(self, ctx: Context, unknown: str) -> Outcome:
-        if unknown:
-            return Outcome("unknown", cause=unknown_input(unknown, self._what, where=ctx.path, kind=self.state_name))
-        return Outcome("reached")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from engine.bus import SkillBus, Topic
-from engine.document import Cell
-from engine.errors import CellError, RobotError
+from engine.errors import RobotError
 from engine.skills.digital_inputs import DigitalInputs, SimulateInput
 from engine.skills.switch_result import SwitchResult
 from robots.port import InputPort
@@ -67,26 +66,3 @@ class InputServices:
             return SwitchResult(success=False, message=str(error))
         self.publish_changes()
         return SwitchResult(success=True, message=f"input {request.input} is {'on' if request.value else 'off'}")
-
-
-def require_inputs(cell: Cell, arm: str, *, count: int, owner: str) -> dict[str, int]:
-    """Return the names of an arm's inputs, with their numbers.
-
-    Args:
-        cell: The cell.
-        arm: The arm's name in it.
-        count: How many inputs there are.
-        owner: Whose they are, for the message.
-
-    Raises:
-        CellError: the cell names a missing input; with its position.
-    """
-    names = cell.document.robots[arm].inputs
-    for name, number in names.items():
-        if number >= count:
-            raise CellError(
-                f"{arm} has no input {number} for {name}",
-                where=cell.source.position(("robots", arm, "inputs", name)),
-                hint=f"{owner} has {f'the inputs 0 to {count - 1}' if count else 'no inputs'}",
-            )
-    return dict(names)

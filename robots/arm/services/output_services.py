@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from engine.bus import SkillBus, Topic
-from engine.document import Cell
-from engine.errors import CellError, RobotError
+from engine.errors import RobotError
 from engine.skills.digital_outputs import DigitalOutputs, SetGripper, SetLinearAxis, SetOutput, SetToolExchange
 from engine.skills.switch_result import SwitchResult
 from robots.port import ConfirmedOutputs, OutputPort
@@ -84,26 +83,3 @@ class OutputServices:
 
     def _now(self) -> DigitalOutputs:
         return DigitalOutputs(values=self._port.values)
-
-
-def require_outputs(cell: Cell, arm: str, *, count: int, owner: str) -> dict[str, int]:
-    """Return the uses of an arm's outputs, with their numbers.
-
-    Args:
-        cell: The cell.
-        arm: The arm's name in it.
-        count: How many outputs there are.
-        owner: Whose they are, for the message.
-
-    Raises:
-        CellError: the cell names a missing output; with its position.
-    """
-    uses = cell.document.robots[arm].outputs
-    for use, output in uses.items():
-        if output >= count:
-            raise CellError(
-                f"{arm} has no output {output} for {use}",
-                where=cell.source.position(("robots", arm, "outputs", use)),
-                hint=f"{owner} has {f'the outputs 0 to {count - 1}' if count else 'no outputs'}",
-            )
-    return {str(use): output for use, output in uses.items()}

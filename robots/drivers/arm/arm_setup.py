@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from engine.cell.drivers import DeviceContext
 from engine.clock import Clock
 from engine.errors import CellError
-from robots.arm.services.input_services import InputServices, require_inputs
-from robots.arm.services.output_services import OutputServices, require_outputs
+from robots.arm.services.input_services import InputServices
+from robots.arm.services.numbered_signals import require_signals
+from robots.arm.services.output_services import OutputServices
 from robots.model.robot_model import RobotModel
 from robots.port import InputPort, OutputPort
 from robots.port.heartbeat import ENGINE_SILENCE_S
@@ -52,13 +53,15 @@ class ArmSetup:
     def output_services(self, port: OutputPort) -> OutputServices:
         """Return the skills of its outputs; raises CellError where the cell names a missing output."""
         name = self.context.robot
-        uses = require_outputs(self.context.cell, name, count=len(port.values), owner=f"the controller of {name}")
+        uses = require_signals(
+            self.context.cell, name, "output", count=len(port.values), owner=f"the controller of {name}"
+        )
         return OutputServices(name, port, uses=uses)
 
     def input_services(self, port: InputPort | None) -> InputServices | None:
         """Return its inputs on the bus, None without any; raises CellError where the cell names a missing input."""
         name, count = self.context.robot, port.count if port is not None else 0
-        names = require_inputs(self.context.cell, name, count=count, owner=f"the controller of {name}")
+        names = require_signals(self.context.cell, name, "input", count=count, owner=f"the controller of {name}")
         return InputServices(name, port, names=names) if port is not None else None
 
 

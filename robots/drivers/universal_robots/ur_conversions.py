@@ -20,15 +20,10 @@ def base_link_wrench(force: Sequence[float]) -> Array:
     return np.array((-x, -y, z, -rx, -ry, rz))
 
 
-def output_values(bits: int) -> tuple[bool, ...]:
-    """Return the standard outputs 0 to 7, then those of the tool, from `actual_digital_output_bits`."""
+def digital_values(bits: int) -> tuple[bool, ...]:
+    """Return 0 to 7, then those of the tool, from `actual_digital_output_bits` or `actual_digital_input_bits`."""
     numbers = (*range(_STANDARD_OUTPUTS), _TOOL_OUTPUT_BIT, _TOOL_OUTPUT_BIT + 1)
     return tuple(bool(bits >> number & 1) for number in numbers)
-
-
-def input_values(bits: int) -> tuple[bool, ...]:
-    """Return the standard inputs 0 to 7, then those of the tool, from `actual_digital_input_bits`."""
-    return output_values(bits)
 
 
 def output_program(output: int, *, on: bool) -> str:

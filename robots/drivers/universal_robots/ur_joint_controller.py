@@ -18,9 +18,8 @@ from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_conversions import (
     OUTPUTS,
     base_link_wrench,
-    input_values,
+    digital_values,
     output_program,
-    output_values,
     payload_with_load,
     tool_centre,
 )
@@ -120,8 +119,8 @@ class UrJointController:
             stopped_by=stop_words(fault) if fault is not None else "",
             remedy=remedy(fault) if fault is not None else "",
             speed_scaling=float(receive.getSpeedScaling()),
-            outputs=output_values(receive.getActualDigitalOutputBits()),
-            inputs=input_values(receive.getActualDigitalInputBits()),
+            outputs=digital_values(receive.getActualDigitalOutputBits()),
+            inputs=digital_values(receive.getActualDigitalInputBits()),
         )
 
     def enable(self, *, tcp_xyz_m: Array, load_kg: float, load_com_m: Array) -> None:

@@ -32,9 +32,8 @@ from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_conversions import (
     OUTPUTS,
     base_link_wrench,
-    input_values,
+    digital_values,
     output_program,
-    output_values,
     payload_with_load,
     tool_centre,
 )
@@ -134,8 +133,8 @@ class UrScriptController:
             stopped_by=f"{fault.value}: {words}" if fault is not None else "",
             remedy=remedy(fault) if fault is not None else "",
             speed_scaling=self._number("speed_scaling"),
-            outputs=output_values(self._integer("actual_digital_output_bits")),
-            inputs=input_values(self._integer("actual_digital_input_bits")),
+            outputs=digital_values(self._integer("actual_digital_output_bits")),
+            inputs=digital_values(self._integer("actual_digital_input_bits")),
         )
 
     def enable(self, *, tcp_xyz_m: Array, load_kg: float, load_com_m: Array) -> None:

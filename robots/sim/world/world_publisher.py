@@ -37,8 +37,9 @@ class WorldPublisher:
         self._up = {part.name: axis for part in scene.parts if (axis := up_axis(part)) != _USUALLY_UP}
         joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
         summary = host.summary
-        self._frames = summary.frames
-        self._named = scene.frames
+        self._frames = (*summary.frames, *scene.frames)
+        self._fixed_xyz = tuple(pose.xyz for pose in scene.frames.values())
+        self._fixed_xyzw = tuple(pose.xyzw for pose in scene.frames.values())
         self._parts = frozenset(summary.parts)
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
         real = {placement.name for placement in scene.arms if placement.driven}
@@ -89,9 +90,9 @@ class WorldPublisher:
         xyz, xyzw = snapshot.frames()
         return FramePoses(
             time_s=snapshot.time_s,
-            names=(*self._frames, *self._named),
-            xyz=(*xyz, *(pose.xyz for pose in self._named.values())),
-            xyzw=(*xyzw, *(pose.xyzw for pose in self._named.values())),
+            names=self._frames,
+            xyz=xyz + self._fixed_xyz,
+            xyzw=xyzw + self._fixed_xyzw,
         )
 
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
