@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -27,6 +28,8 @@ ToJoints = Callable[[Array, Array], Array]
 """Maps a commanded velocity and joint positions (n,) to joint velocities (n,)."""
 
 _CHECK_PERIOD_S = 0.03
+# The reaction time is the longest time in which one of so many checks took effect after the one before, and some more.
+_CHECKS_REMEMBERED, _SLACK = 10, 1.25
 # Timeout of a search for the directions out, which ends for another direction of the jog.
 _SEARCH_TIMEOUT_S = 1.0
 _STEP_S, _LONGEST_S = 0.01, 3.0
@@ -37,6 +40,7 @@ _EVERY = 5
 _ROUNDING_M = 1e-4
 # Below this share of the commanded velocity the arm stands still.
 _CREEP = 0.02
+_REST_RAD_S = 0.005
 # A velocity within 11 degrees of the checked direction counts as checked.
 _SAME_DIRECTION = 0.98
 # Within this the ways out are the same.
@@ -46,11 +50,29 @@ _log = logging.getLogger("flexcell.arm")
 
 @dataclass(frozen=True, kw_only=True)
 class _SpeedLimit:
-    """Speed limit of a jog along a unit direction, from the last check, and what it would touch there first."""
+    """Speed limit of a jog along a unit direction, from the last check, and what it would touch there first.
+
+    The check assumes that another one takes effect until `valid_until_s`; without one the arm must brake then.
+    """
 
     direction: Array
     fastest: float
     pair: NamePair | None
+    valid_until_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PathAhead:
+    """Where the arm goes if it follows what is commanded for the reaction time, and then stops.
+
+    Distances are in seconds at the commanded velocity: `travelled_s` at each sample (n,), `slowing_s` while the arm
+    decelerates from it. `moving` is the share of that velocity with which the arm moves now.
+    """
+
+    trajectory: JointTrajectory
+    travelled_s: Array
+    slowing_s: float
+    moving: float
 
 
 class JogGuard:
@@ -85,6 +107,7 @@ class JogGuard:
         self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * BRAKING_SHARE
         self._commanded = np.zeros(0)
         self._limit: _SpeedLimit | None = None
+        self._cycles_s: deque[float] = deque(maxlen=_CHECKS_REMEMBERED)
         self._recheck = asyncio.Event()
         self._monitoring: asyncio.Task[None] | None = None
         self._failure = ""
@@ -95,6 +118,22 @@ class JogGuard:
         """Whether the commanded direction is checked, and the arm stands there before an obstacle."""
         limit = self._limit
         return limit is not None and limit.fastest == 0.0 and limit.pair is not None
+
+    @property
+    def valid_s(self) -> float:
+        """For how long the arm may follow what `bounded` returned; infinite where that does not move it."""
+        return math.inf if self._limit is None else self._limit.valid_until_s - self._runner.clock.now_s()
+
+    @property
+    def _is_at_rest(self) -> bool:
+        """Whether the arm stands and is not let move before the next check takes effect."""
+        is_held = self._limit is None or self._limit.fastest == 0.0
+        return is_held and float(np.abs(self._runner.port.sample().velocity_rad_s).max()) < _REST_RAD_S
+
+    @property
+    def _reaction_s(self) -> float:
+        """Greatest age of the result of a check when the next one takes effect, on a machine as busy as lately."""
+        return max(REACTION_S, _SLACK * max(self._cycles_s, default=0.0))
 
     async def open(self) -> None:
         """Return when the scene and the path checks are ready; call `close` when the jog has ended.
@@ -149,18 +188,30 @@ class JogGuard:
             again()
 
     async def _look_ahead(self, again: Callable[[], None]) -> None:
+        clock = self._runner.clock
+        before_s = math.inf
         while True:
             while not self._commanded.any():
                 # A key that was released at once leaves a request without a direction.
                 self._recheck.clear()
+                before_s = math.inf
                 await self._recheck.wait()
             self._recheck.clear()
-            commanded = self._commanded
-            fastest, reason, pair = await self._check(commanded)
+            commanded, begun_s, reaction_s = self._commanded, clock.now_s(), self._reaction_s
+            is_waiting = self._is_at_rest
+            fastest, reason, pair = await self._check(commanded, reaction_s)
+            self._cycles_s.append(clock.now_s() - min(before_s, begun_s))
+            before_s = begun_s
             if reason and not self.held_by:
                 _log.info("%s: jog speed limited: %s", self._runner.name, reason)
             self.held_by = reason
-            self._limit = _SpeedLimit(direction=commanded / np.linalg.norm(commanded), fastest=fastest, pair=pair)
+            self._limit = _SpeedLimit(
+                direction=commanded / np.linalg.norm(commanded),
+                fastest=fastest,
+                pair=pair,
+                # An arm that waited for the check sets out from where the check began.
+                valid_until_s=(clock.now_s() if is_waiting else begun_s) + reaction_s,
+            )
             again()
             await self._publish_block(pair if fastest == 0.0 else None, is_free=not reason)
             with suppress(TimeoutError):
@@ -206,9 +257,11 @@ class JogGuard:
             recheck.cancel()
             await asyncio.wait((search, recheck))
 
-    async def _check(self, commanded: Array) -> tuple[float, str, NamePair | None]:
+    async def _check(self, commanded: Array, reaction_s: float) -> tuple[float, str, NamePair | None]:
         """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""
-        path, travelled_s, slowing_s = self._ahead(commanded)
+        begun_s = self._runner.clock.now_s()
+        ahead = self._ahead(commanded, reaction_s)
+        path = ahead.trajectory
         found = await predict_collision(self._workspace, self._scene.check(path))
         if found is None:
             return float(np.linalg.norm(commanded)), "", None
@@ -219,8 +272,11 @@ class JogGuard:
         if found.is_unmonitored:
             return 0.0, found.reason, None
         # The free path ends at the sample before the first contact.
-        free_s = float(travelled_s[max(0, round(found.at_s / _STEP_S) - 1)])
-        share = _stoppable_share(free_s * _USED_SHARE, slowing_s)
+        free_s = float(ahead.travelled_s[max(0, round(found.at_s / _STEP_S) - 1)])
+        passed_s = self._runner.clock.now_s() - begun_s
+        share = _stoppable_share(
+            free_s * _USED_SHARE - ahead.moving * passed_s, ahead, reaction_s=reaction_s - passed_s
+        )
         return (
             float(np.linalg.norm(commanded)) * share,
             found.reason,
@@ -249,17 +305,13 @@ class JogGuard:
             return self._published[0]
         return pairs[0] if pairs else None
 
-    def _ahead(self, commanded: Array) -> tuple[JointTrajectory, Array, float]:
-        """Return the predicted trajectory: the arm follows `commanded` until the next check takes effect, then stops.
-
-        Also returns the distance travelled at each sample, in seconds at the commanded velocity, and the braking
-        distance from that velocity, in the same unit.
-        """
+    def _ahead(self, commanded: Array, reaction_s: float) -> _PathAhead:
         sample = self._runner.port.sample()
         joints, velocity = sample.desired_rad.copy(), sample.velocity_rad_s.copy()
         rows, travelled = [joints], [0.0]
-        reaction, longest = round(REACTION_S / _STEP_S), round(_LONGEST_S / _STEP_S)
+        reaction, longest = math.ceil(reaction_s / _STEP_S), round(_LONGEST_S / _STEP_S)
         requested = self._to_joints(commanded, joints)
+        moving = max(0.0, _share(velocity, requested))
         for k in range(longest):
             if k < reaction:
                 requested = self._to_joints(commanded, joints)
@@ -267,24 +319,32 @@ class JogGuard:
             most = float((self._braking_rad_s2 * _STEP_S / np.maximum(np.abs(change), 1e-12)).min())
             velocity = velocity + change * min(1.0, most)
             joints = joints + velocity * _STEP_S
-            share = float(velocity @ requested) / max(1e-12, float(requested @ requested))
             rows.append(joints)
-            travelled.append(travelled[-1] + max(0.0, share) * _STEP_S)
+            travelled.append(travelled[-1] + max(0.0, _share(velocity, requested)) * _STEP_S)
             if k >= reaction and not velocity.any():
                 break
         path = np.array(rows)
-        slowing_s = 0.5 * float((np.abs(requested) / self._braking_rad_s2).max())
-        return (
-            JointTrajectory(dt_s=_STEP_S, position_rad=path, velocity_rad_s=path * 0.0),
-            np.array(travelled),
-            slowing_s,
+        return _PathAhead(
+            trajectory=JointTrajectory(dt_s=_STEP_S, position_rad=path, velocity_rad_s=path * 0.0),
+            travelled_s=np.array(travelled),
+            slowing_s=0.5 * float((np.abs(requested) / self._braking_rad_s2).max()),
+            moving=moving,
         )
 
 
-def _stoppable_share(free_s: float, slowing_s: float) -> float:
+def _share(velocity: Array, requested: Array) -> float:
+    """Return the component of a velocity along another one, as a share of that one."""
+    return float(velocity @ requested) / max(1e-12, float(requested @ requested))
+
+
+def _stoppable_share(free_s: float, ahead: _PathAhead, *, reaction_s: float) -> float:
     """Return the share of a velocity from which an arm stops within its free path, all in seconds at that velocity.
 
-    At a share k it travels k times the reaction time, plus k² times `slowing_s` while it decelerates.
+    At a share k it travels k times the reaction time, plus k² times `slowing_s` while it decelerates; an arm that
+    moves at a greater share now decelerates from that one.
     """
-    share = (math.sqrt(REACTION_S**2 + 4.0 * slowing_s * free_s) - REACTION_S) / max(1e-9, 2.0 * slowing_s)
+    reaction_s, free_s, slowing_s = max(1e-9, reaction_s), max(0.0, free_s), ahead.slowing_s
+    share = (math.sqrt(reaction_s**2 + 4.0 * slowing_s * free_s) - reaction_s) / max(1e-9, 2.0 * slowing_s)
+    if share < ahead.moving:
+        share = (free_s - ahead.moving**2 * slowing_s) / reaction_s
     return 0.0 if share < _CREEP else min(1.0, share)

@@ -169,10 +169,15 @@ class JogRun:
                 press.moving_since_s = now_s
             press.blocked = self._guard is not None and self._guard.is_blocked
             if press.over_s(self.watchdog_s) > now_s:
-                self._stream.send(sent, age_s=0.0 if press.released_s is not None else now_s - press.heard_s)
+                age_s = 0.0 if press.released_s is not None else now_s - press.heard_s
+                self._stream.send(sent, age_s=max(age_s, self._unchecked_age_s()))
                 break
         self._handle.replaceable = self._replaceable and press is None
         self._wait_for_end(now_s)
+
+    def _unchecked_age_s(self) -> float:
+        """Return the age with which the stream's watchdog stops the arm when the check of its path is out of date."""
+        return max(0.0, self.watchdog_s - self._guard.valid_s) if self._guard is not None else 0.0
 
     def _wait_for_end(self, now_s: float) -> None:
         if self._timer is not None:

@@ -29,6 +29,7 @@ from engine.skills.planning_scene import AttachPart, CheckCollision, CollisionRe
 from robots.arm.jogging.directions_out import DirectionsOut
 from robots.arm.scene_queries.scene_check import SceneCheck
 from robots.planning.scene.planning_scene import NamePair
+from robots.planning.worker import inline_planner
 from robots.port import GraspCommand
 from tests.robots.arm.simulated import Simulated, simulated
 from tests.robots.fake_port import FakeStream
@@ -81,6 +82,31 @@ async def test_the_tool_commanded_through_the_table_stands_above_it() -> None:
     assert stood.distance_m == pytest.approx(MARGIN_M, abs=0.006)
     assert up.status is GoalStatus.SUCCEEDED
     assert high.xyz[2] - low.xyz[2] > 0.03
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("check_s", [0.1, 0.25])
+async def test_checks_that_answer_late_let_no_jog_nearer(check_s: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On an overloaded machine; the arm gets there, slower, and not by a jerk a check.
+
+    The distance is that of the lowest point of the tool on its way, so that no swing back hides how near it was.
+    """
+    async with simulated() as cell:
+        held_by, _ = await jogged(cell, JogTool(velocity=DOWN, duration_s=4.0))
+        lowest_m = (await cell.tool()).xyz[2]
+    async with simulated() as cell:
+        await cell.bus.call(PrepareJog(), to="left")
+        monkeypatch.setattr(inline_planner, "LOOK_FIXED_S", check_s)
+        handle = await cell.begun(JogTool(velocity=DOWN, duration_s=12.0), after_s=0.0)
+        ending = asyncio.ensure_future(handle.result())
+        heights_m: list[float] = []
+        while not ending.done():
+            heights_m.append((await cell.tool()).xyz[2])
+            await asyncio.wait((ending,), timeout=0.01)
+    assert "would touch table" in held_by
+    assert ending.result().status is GoalStatus.SUCCEEDED
+    assert min(heights_m) > lowest_m - 0.001
+    assert heights_m[-1] == pytest.approx(lowest_m, abs=0.006)
 
 
 @pytest.mark.virtual
@@ -350,13 +376,13 @@ async def test_what_is_passed_on_anew_is_as_old_as_the_word_itself() -> None:
         began_s = cell.bus.clock.now_s()
         cell.bus.topic("left/jog", JogCommand).publish(JogCommand(velocity=(0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
         ages_s: list[float] = []
-        while cell.bus.clock.now_s() < began_s + 0.19:
-            await cell.bus.clock.sleep(0.01)
-            ages_s = stream(cell).ages_s
-            assert ages_s[-1] <= cell.bus.clock.now_s() - began_s
+        while (now_s := cell.bus.clock.now_s()) < began_s + 0.19:
+            if len(stream(cell).ages_s) > len(ages_s):
+                ages_s = list(stream(cell).ages_s)
+                assert ages_s[-1] > now_s - began_s - 0.002
+            await cell.bus.clock.sleep(0.001)
         await handle.result()
     assert len(ages_s) > 3
-    assert ages_s == sorted(ages_s)
     assert ages_s[-1] > 0.1
 
 
