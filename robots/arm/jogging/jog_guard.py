@@ -19,7 +19,9 @@ from robots.arm.execution.motion_runner import MotionRunner
 from robots.arm.execution.stopping_path import BRAKING_SHARE, REACTION_S
 from robots.arm.jogging.directions_out import APART_M, DirectionsOut
 from robots.arm.jogging.press_queue import Row
+from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.scene_check import SceneCheck
+from robots.planning.request import PathCheck
 from robots.planning.scene.planning_scene import NamePair
 from robots.port import Array, JointTrajectory
 from robots.workspace.workspace import Workspace
@@ -100,6 +102,7 @@ class JogGuard:
         self._runner = runner
         self._workspace = workspace
         self._scene = SceneCheck(runner.name, workspace, rule=rule)
+        self._attached = AttachedPartGuard(runner.name, workspace)
         self._to_joints = to_joints
         self._directions_out = directions_out
         self._publish = publish
@@ -262,11 +265,11 @@ class JogGuard:
         begun_s = self._runner.clock.now_s()
         ahead = self._ahead(commanded, reaction_s)
         path = ahead.trajectory
-        found = await predict_collision(self._workspace, self._scene.check(path))
+        found = await predict_collision(self._workspace, self._first_contact(path))
         if found is None:
             return float(np.linalg.norm(commanded)), "", None
         if found.at_s == 0.0 and await self._takes_apart(path, found.pairs):
-            found = await predict_collision(self._workspace, self._scene.check(path, parting=found.pairs))
+            found = await predict_collision(self._workspace, self._first_contact(path, parting=found.pairs))
             if found is None:
                 return float(np.linalg.norm(commanded)), "", None
         if found.is_unmonitored:
@@ -282,6 +285,17 @@ class JogGuard:
             found.reason,
             self._pair_of(found.pairs),
         )
+
+    async def _first_contact(self, path: JointTrajectory, *, parting: tuple[NamePair, ...] = ()) -> PathCheck:
+        """Return where the path is blocked first: in the scene, or by what an attached part would be pressed into.
+
+        The scene allows contact of a part with what it was picked from, at any depth.
+        """
+        check = await self._scene.check(path, parting=parting)
+        attached = await self._attached.check(path)
+        if attached.blocked_at_s is None or not set(attached.pairs).difference(parting):
+            return check
+        return check if check.blocked_at_s is not None and check.blocked_at_s <= attached.blocked_at_s else attached
 
     async def _takes_apart(self, path: JointTrajectory, touching: Sequence[NamePair]) -> bool:
         """Return whether a path that begins in contact takes all that touch apart, all the way.

@@ -14,14 +14,14 @@ import pytest
 from engine.bus import GoalStatus
 from engine.cause_chain import describe_cause
 from engine.cell.open_cell import OpenCell
-from engine.messages import Pose
+from engine.messages import Pose, Vector3
 from engine.skill import Action, Service
 from engine.skills.contact import MoveUntilContact
 from engine.skills.dmp import CartDMP, JointDMP
-from engine.skills.jogging import StepTool
-from engine.skills.motion import CartLinTask, CartTrapVel, InverseKinematics, JointTrapVel
+from engine.skills.jogging import JogTool, StepTool
+from engine.skills.motion import CartLinTask, CartTrapVel, ForwardKinematics, InverseKinematics, JointTrapVel
 from engine.skills.planning import MotionTarget, MoveFree
-from engine.skills.planning_scene import AllowContact, AttachPart, DetachPart, PutObstacle
+from engine.skills.planning_scene import CONTACT_M, AllowContact, AttachPart, DetachPart, PutObstacle
 from tests.robots.arm.every_skill import cart_dmp, joint_dmp
 from tests.robots.sim.demo_cell import ABOVE_PICK, DOWN, LIFT, PICK, joint_state, opened_cell, pick
 from tests.robots.workspace.free_cell import box
@@ -150,6 +150,26 @@ async def test_what_a_part_lies_on_is_no_way_for_it(tmp_path: Path, goal: Action
         assert (status, f"{PART} would touch {other}" in why) == (GoalStatus.REJECTED, True), why
         await opened.went(CartLinTask(pose=Pose(xyz=(PICK.xyz[0] + 0.02, *PICK.xyz[1:]), xyzw=DOWN), duration_s=1.0))
         await opened.went(LIFT)
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("attached", [True, False])
+async def test_a_jog_presses_no_part_into_what_it_stands_on(tmp_path: Path, attached: bool) -> None:
+    """Down it stands at once, along the surface and up it goes; told of the scene or gripped only."""
+    async with carrying(tmp_path, lifted=False, attached=attached) as opened:
+        # Or the margin of the table under the tray would hold the arm.
+        await opened.ask(AllowContact(first=PART, second="table"))
+        await opened.ask(AllowContact(first="left", second="table"))
+        await opened.ask(AllowContact(first="left", second="tray_north"))
+
+        async def jogged_m(velocity: Vector3) -> Vector3:
+            before = await opened.ask(ForwardKinematics(), to="left")
+            await opened.went(JogTool(velocity=(*velocity, 0.0, 0.0, 0.0), duration_s=1.0))
+            after = await opened.ask(ForwardKinematics(), to="left")
+            return tuple(b - a for a, b in zip(before.xyz, after.xyz, strict=True))
+
+        assert (await jogged_m((0.0, 0.0, -0.05)))[2] > -CONTACT_M - 0.001
+        assert (await jogged_m((0.0, 0.0, 0.05)))[2] > 0.03
 
 
 @pytest.mark.virtual
