@@ -1,11 +1,14 @@
 """What a cell consists of, for a person who reads it: each item with its place in the document and on the bus.
 
-Items are addressed as in the document: `robots/left`, `robots/left/gripper`, `parts/hca_north`, `world`.
+Items are addressed as in the document: `robots/left`, `robots/left/gripper`, `parts/hca_north`, `world`; those of a
+module by their names in the cell: `fixtures/vice/jaws`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 import msgspec
@@ -15,7 +18,9 @@ from engine.document.cell import Cell, CellDocument
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
 
-ItemKind = Literal["robot", "tool", "fixture", "part", "frame", "camera", "person", "occupancy", "world", "store"]
+ItemKind = Literal[
+    "robot", "tool", "module", "fixture", "part", "frame", "camera", "person", "occupancy", "world", "store"
+]
 
 
 class CellItem(msgspec.Struct, frozen=True, kw_only=True):
@@ -23,7 +28,8 @@ class CellItem(msgspec.Struct, frozen=True, kw_only=True):
 
     `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item
     that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are
-    its lines of the document, the first of which has the number `line`, from 1.
+    its lines of the document, the first of which has the number `line`, from 1; `file` is the document of its module,
+    empty for that of the cell.
     """
 
     path: str
@@ -34,6 +40,7 @@ class CellItem(msgspec.Struct, frozen=True, kw_only=True):
     topics: tuple[str, ...] = ()
     text: str = ""
     line: int = 0
+    file: str = ""
 
 
 class CellItems(msgspec.Struct, frozen=True, kw_only=True):
@@ -67,26 +74,49 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
     """
     if cell is None:
         return CellItems(cell=name, description="", file="", changed=False, items=())
-    now, lines = _read(cell)
-    items = tuple(
-        msgspec.structs.replace(item, **_excerpt(item.path, now, lines)) for item in named_items(cell, topics=topics)
-    )
+    text = _read(cell.file)
+    modules = {name: _read(module.file) for name, module in cell.modules.items()}
+    items = tuple(_with_lines(item, cell, text, modules) for item in named_items(cell, topics=topics))
     return CellItems(
         cell=name,
         description=cell.document.description,
         file=cell.file.name,
-        changed=now is None or now.data != cell.source.data,
+        changed=tuple(each.data for each in (text, *modules.values())) != cell.content,
         items=items,
     )
 
 
-def _read(cell: Cell) -> tuple[DocumentSource | None, list[str]]:
-    """Return the document as it is now and its lines; None while it cannot be read."""
+@dataclass(frozen=True, kw_only=True)
+class _Text:
+    """A document as it is now, with its lines; without `source` while it cannot be read."""
+
+    source: DocumentSource | None = None
+    lines: list[str] = field(default_factory=list[str])
+
+    @property
+    def data(self) -> object:
+        """Its plain data; None while it cannot be read."""
+        return self.source.data if self.source is not None else None
+
+
+def _read(file: Path) -> _Text:
     try:
-        content = load_text(cell.file)
-        return parse_source(content, file=str(cell.file)), content.decode().splitlines()
+        content = load_text(file)
+        return _Text(source=parse_source(content, file=str(file)), lines=content.decode().splitlines())
     except DocumentError:
-        return None, []
+        return _Text()
+
+
+def _with_lines(item: CellItem, cell: Cell, text: _Text, modules: Mapping[str, _Text]) -> CellItem:
+    """Return the item with its lines, of the document of its module where it stands on one."""
+    section, _, name = item.path.partition("/")
+    module, _, key = name.partition("/")
+    if section == "robots" or module not in modules or not key:
+        return msgspec.structs.replace(item, **_excerpt(item.path.split("/"), text))
+    found = _excerpt([section, key], modules[module])
+    # As the document of the cell names it.
+    file = f"{cell.document.modules[module].module.rstrip('/')}/{cell.modules[module].file.name}"
+    return msgspec.structs.replace(item, **found, file=file)
 
 
 def _items(document: CellDocument) -> Iterator[CellItem]:
@@ -95,14 +125,26 @@ def _items(document: CellDocument) -> Iterator[CellItem]:
         yield CellItem(path=path, kind="robot", name=name, model=robot.model)
         if robot.gripper is not None:
             yield CellItem(path=f"{path}/gripper", kind="tool", name=name, model=robot.gripper.model, owner=path)
+
+    def owner(name: str) -> str:
+        """Return the address of the module that something stands on; empty without one."""
+        module = name.partition("/")[0]
+        return f"modules/{module}" if module in document.modules else ""
+
+    for name, spec in document.modules.items():
+        yield CellItem(path=f"modules/{name}", kind="module", name=name, model=spec.module.rstrip("/").split("/")[-1])
     for name, fixture in document.fixtures.items():
-        yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape)
+        yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape, owner=owner(name))
     for name, part in document.parts.items():
-        yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape)
+        yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape, owner=owner(name))
     for name, frame in document.frames.items():
-        yield CellItem(path=f"frames/{name}", kind="frame", name=name, model=f"in {frame.parent}")
+        section = "connectors" if name in document.connectors else "frames"
+        if name not in document.modules:
+            yield CellItem(
+                path=f"{section}/{name}", kind="frame", name=name, model=f"in {frame.parent}", owner=owner(name)
+            )
     for name, camera in document.cameras.items():
-        yield CellItem(path=f"cameras/{name}", kind="camera", name=name, model=camera.driver)
+        yield CellItem(path=f"cameras/{name}", kind="camera", name=name, model=camera.driver, owner=owner(name))
     for name in document.people:
         yield CellItem(path=f"people/{name}", kind="person", name=name, model="arm")
     if document.occupancy is not None:
@@ -130,14 +172,15 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith("cell/occupancy"))
         case "world":
             return tuple(each for each in known if each in ("cell/frames", "cell/planning_scene"))
-        case "fixture" | "frame" | "person" | "store":
+        case "module" | "fixture" | "frame" | "person" | "store":
             return ()
 
 
-def _excerpt(path: str, source: DocumentSource | None, lines: list[str]) -> dict[str, object]:
+def _excerpt(path: Sequence[str], text: _Text) -> dict[str, object]:
     """Return the lines of an item, up to the next key of it or of what contains it; none where it is no more."""
-    place, later = (source.place, []) if source is not None else (None, list[int]())
-    for step in path.split("/"):
+    lines = text.lines
+    place, later = (text.source.place, []) if text.source is not None else (None, list[int]())
+    for step in path:
         children = place.children if place is not None else None
         place = children.get(step) if children is not None else None
         if place is None or children is None:

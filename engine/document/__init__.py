@@ -13,7 +13,7 @@ from engine.document.cell import (
     RobotSpec,
     load_cell,
 )
-from engine.document.cell_bodies import Fixture, Jitter, PartSpec
+from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -21,7 +21,6 @@ from engine.document.cell_perception import (
     OccupancyMap,
     Person,
     SpeedAndSeparationMonitoring,
-    UnknownBody,
     UnknownSpacePolicy,
     arm_reach_m,
 )
@@ -34,6 +33,7 @@ from engine.document.loader import (
     read_behavior,
     survey_behavior,
 )
+from engine.document.module_document import MODULE_FILE, Module, load_module
 from engine.document.nodes.concurrency_condition import ConcurrencyCondition
 from engine.document.nodes.node_spec import (
     ConcurrencySpec,
@@ -55,6 +55,7 @@ from engine.document.text.yaml_writer import write_yaml
 
 __all__ = [
     "MAX_BYTES",
+    "MODULE_FILE",
     "Behavior",
     "BehaviorDocument",
     "BehaviorSurvey",
@@ -73,6 +74,7 @@ __all__ = [
     "Jitter",
     "KeySignature",
     "MachineSpec",
+    "Module",
     "MujocoWorld",
     "NodeSpec",
     "ObjectDetector",
@@ -99,6 +101,7 @@ __all__ = [
     "decode_document",
     "load_behavior",
     "load_cell",
+    "load_module",
     "load_source",
     "parse_behavior",
     "parse_source",

@@ -16,15 +16,11 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from engine.document.cell_bodies import Fixture, PartSpec
+from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
 from engine.document.cell_frames import FrameSpec, poses_in_world, require_frames
-from engine.document.cell_perception import (
-    DepthCamera,
-    OccupancyMap,
-    Person,
-    SpeedAndSeparationMonitoring,
-    UnknownBody,
-)
+from engine.document.cell_modules import ModuleSpec, docked, load_modules, with_positions
+from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
+from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name, Placement
 from engine.document.robot_spec import RobotSpec, require_driver_kind
@@ -108,6 +104,10 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         dict[Name, FrameSpec],
         Meta(description="Frames in which behaviors give poses, and which they find on `cell/frames`"),
     ] = {}
+    connectors: Annotated[
+        dict[Name, FrameSpec], Meta(description="Where modules are docked; frames of the cell too")
+    ] = {}
+    modules: dict[Name, ModuleSpec] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -141,6 +141,18 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         yield from ((("cameras", name, "frame"), camera.frame) for name, camera in self.cameras.items())
         yield from ((("people", name, "frame"), person.frame) for name, person in self.people.items())
 
+    def with_modules(self, modules: Mapping[str, Module]) -> CellDocument:
+        """Return the same cell with its connectors as frames, and with what stands on its modules."""
+        frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
+        parts, cameras = dict(self.parts), dict(self.cameras)
+        for name, module in modules.items():
+            added = docked(name, module.document, connector=self.modules[name].connector)
+            frames |= added.frames
+            fixtures |= added.fixtures
+            parts |= added.parts
+            cameras |= added.cameras
+        return replace(self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras)
+
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
         poses = poses_in_world(self.frames, self.fixtures)
@@ -167,14 +179,23 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Cell(DocumentFile[CellDocument]):
-    """A cell document with its file; `simulated` are devices whose drivers the simulation replaces, with these."""
+    """A cell document with its file, and with everything that stands on its modules.
 
+    `modules` are their documents. `simulated` are devices whose drivers the simulation replaces, with these.
+    """
+
+    modules: Mapping[str, Module] = field(default_factory=dict[str, Module])
     simulated: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def name(self) -> str:
         """The name of the cell."""
         return self.document.cell
+
+    @property
+    def content(self) -> tuple[object, ...]:
+        """The plain data of the document and of its modules, to compare it with another reading."""
+        return self.source.data, *(module.source.data for module in self.modules.values())
 
     @property
     def seed_file(self) -> Path | None:
@@ -203,8 +224,14 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
         DocumentError: as `load_cell`.
     """
     document = decode_document(source, CellDocument, refused=_REFUSED)
+    modules: dict[str, Module] = {}
+    if document.modules or document.connectors:
+        _require_free_names(document, source)
+        connectors = document.connectors
+        modules = load_modules(document.modules, connectors=connectors, source=source, folder=file.parent)
+        document, source = document.with_modules(modules), with_positions(source, modules)
     _require_no_secret(document, source)
-    _require_sizes(document, source)
+    require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)
@@ -214,21 +241,15 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
-    return Cell(document=document.in_world(), file=file, source=source)
+    return Cell(document=document.in_world(), file=file, source=source, modules=modules)
 
 
 _LATER = "remove it"
-_REFUSED = {"modules": _LATER, "bus": _LATER, "calibration": _LATER}
+_REFUSED = {"bus": _LATER, "calibration": _LATER}
 
 
 # A password between `:` and `@` that is not an environment variable.
 _SECRET = re.compile(r"://[^@/:]*:(?!\$\{\w+\}@)[^@/]*@")
-_SIZES = {
-    "box": "edge lengths x, y, z",
-    "tray": "edge lengths x, y, z",
-    "cylinder": "diameter, length",
-    "sphere": "diameter",
-}
 
 
 def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
@@ -241,30 +262,20 @@ def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
         )
 
 
-def _require_sizes(document: CellDocument, source: DocumentSource) -> None:
-    bodies: list[tuple[DataPath, Fixture | PartSpec | UnknownBody]] = [
-        *((("fixtures", name), fixture) for name, fixture in document.fixtures.items()),
-        *((("parts", name), part) for name, part in document.parts.items()),
-        *((("unknown_bodies", name), body) for name, body in document.unknown_bodies.items()),
-    ]
-    for path, body in bodies:
-        meaning = _SIZES[body.shape]
-        due = len(meaning.split(","))
-        if len(body.size_m) != due:
-            lengths = "one length" if due == 1 else f"{due} lengths"
-            raise DocumentError(
-                f"the size of a {body.shape} has {lengths}, not {len(body.size_m)}",
-                where=source.position((*path, "size_m")),
-                hint=meaning,
-            )
-        if isinstance(body, Fixture) and body.shape == "tray" and body.spring is not None:
-            raise DocumentError(
-                "a tray cannot have a spring", where=source.position((*path, "spring")), hint="put a sprung box into it"
-            )
-        if path[0] == "parts" and path[1] in document.fixtures:
-            raise DocumentError(
-                f"`{path[1]}` is both a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
-            )
+def _require_free_names(document: CellDocument, source: DocumentSource) -> None:
+    """Require that connectors and modules, which are frames, have names of their own."""
+    taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
+    taken |= {**dict.fromkeys(document.frames, "frame"), **dict.fromkeys(document.cameras, "camera")}
+    for section, noun in (("connectors", "connector"), ("modules", "module")):
+        names: Mapping[str, object] = getattr(document, section)
+        for name in names:
+            if name in taken:
+                raise DocumentError(
+                    f"`{name}` is both a {noun} and a {taken[name]}",
+                    where=source.position((section, name), of_key=True),
+                    hint="rename one",
+                )
+            taken[name] = noun
 
 
 def _require_drivers(document: CellDocument, source: DocumentSource) -> None:

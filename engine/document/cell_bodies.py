@@ -1,13 +1,16 @@
-"""What stands and lies in a cell: fixtures and parts."""
+"""What stands and lies in a cell: fixtures, parts, and bodies that nobody knows of."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from msgspec import Meta
 
 from engine.document.placement import Angle, Color, FramedPlacement, Length, Offset
 from engine.document.text.decoding import StrictModel
+from engine.document.text.yaml_source import DataPath, DocumentSource
+from engine.errors import DocumentError
 
 
 class Jitter(StrictModel, frozen=True, kw_only=True):
@@ -64,3 +67,62 @@ class PartSpec(StrictModel, frozen=True, kw_only=True):
     at: FramedPlacement = FramedPlacement()
     jitter: Jitter = Jitter()
     color: Color = "#d0d0d0"
+
+
+class UnknownBody(StrictModel, frozen=True, kw_only=True):
+    """A body of the simulated world that nobody knows of: cameras see it, arms collide with it, and that is all.
+
+    It is no obstacle of planners and no name in lists and checks. `size_m` as for a part; `at` is its centre. With
+    `mass_kg` it is free, without it is fixed. For tests and demonstrations.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    size_m: tuple[Length, ...]
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")] | None = None
+    at: FramedPlacement = FramedPlacement()
+    color: Color = "#a04040"
+
+
+_SIZES = {
+    "box": "edge lengths x, y, z",
+    "tray": "edge lengths x, y, z",
+    "cylinder": "diameter, length",
+    "sphere": "diameter",
+}
+
+
+def require_sizes(
+    fixtures: Mapping[str, Fixture],
+    parts: Mapping[str, PartSpec],
+    source: DocumentSource,
+    *,
+    unknown_bodies: Mapping[str, UnknownBody] | None = None,
+) -> None:
+    """Require as many lengths as the shape of each body has, and that no part is named as a fixture.
+
+    Raises:
+        DocumentError: `where` is the position in the document.
+    """
+    bodies: list[tuple[DataPath, Fixture | PartSpec | UnknownBody]] = [
+        *((("fixtures", name), fixture) for name, fixture in fixtures.items()),
+        *((("parts", name), part) for name, part in parts.items()),
+        *((("unknown_bodies", name), body) for name, body in (unknown_bodies or {}).items()),
+    ]
+    for path, body in bodies:
+        meaning = _SIZES[body.shape]
+        due = len(meaning.split(","))
+        if len(body.size_m) != due:
+            lengths = "one length" if due == 1 else f"{due} lengths"
+            raise DocumentError(
+                f"the size of a {body.shape} has {lengths}, not {len(body.size_m)}",
+                where=source.position((*path, "size_m")),
+                hint=meaning,
+            )
+        if isinstance(body, Fixture) and body.shape == "tray" and body.spring is not None:
+            raise DocumentError(
+                "a tray cannot have a spring", where=source.position((*path, "spring")), hint="put a sprung box into it"
+            )
+        if path[0] == "parts" and path[1] in fixtures:
+            raise DocumentError(
+                f"`{path[1]}` is both a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
+            )

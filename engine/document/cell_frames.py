@@ -54,6 +54,7 @@ def require_frames(
     fixtures: Mapping[str, Fixture],
     uses: Iterator[tuple[DataPath, str]],
     taken: Mapping[str, str],
+    whole: str = "cell",
 ) -> None:
     """Require names of their own, and that everything stands in a frame that leads to the world.
 
@@ -63,6 +64,7 @@ def require_frames(
         fixtures: The fixtures, which are frames too.
         uses: The frames in which things stand that are none, each with its path in the document.
         taken: What else has a name in the world, with what it is.
+        whole: What the document describes.
 
     Raises:
         DocumentError: a name is taken, a frame is unknown, or frames stand in one another.
@@ -83,7 +85,7 @@ def require_frames(
     required += [(path, frame, known) for path, frame in uses]
     for path, frame, possible in required:
         if frame not in possible:
-            odd = "itself" if frame == path[1] else f"`{frame}`, which is no frame and no fixture of the cell"
+            odd = "itself" if frame == path[1] else f"`{frame}`, which is no frame and no fixture of the {whole}"
             hint = did_you_mean(frame, possible)
             raise DocumentError(f"`{path[1]}` stands in {odd}", where=source.position(path), hint=hint)
     _require_no_circle(parents, paths, source)

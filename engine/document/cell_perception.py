@@ -1,4 +1,4 @@
-"""Cameras, occupancy map, people and unknown bodies in a cell document."""
+"""Cameras, occupancy map and people in a cell document."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from msgspec.structs import replace
 from engine.document.placement import (
     Angle,
     Color,
-    FramedPlacement,
     FrameName,
+    ItemName,
     Length,
     Name,
     Offset,
@@ -46,12 +46,12 @@ class ObjectDetector(StrictModel, frozen=True, kw_only=True):
 
     rate_hz: DetectionRate = 4.0
     always: bool = False
-    labels: dict[Name, PartLabel] = {}
+    labels: dict[ItemName, PartLabel] = {}
     min_pixels: PixelCount = 25
     min_share: SeenShare = 0.2
     noise_m: Offset = 0.0
     noise_rad: Angle = 0.0
-    frame: Name = "world"
+    frame: ItemName = "world"
     frame_at: Placement = Placement()
 
     def __post_init__(self) -> None:
@@ -159,20 +159,6 @@ class SpeedAndSeparationMonitoring(StrictModel, frozen=True, kw_only=True):
     reaction_s: Annotated[float, Meta(gt=0.0, le=5.0, description="Least reaction time in seconds")] | None = None
     intrusion_distance_m: Offset | None = None
     position_uncertainty_m: Offset = 0.03
-
-
-class UnknownBody(StrictModel, frozen=True, kw_only=True):
-    """A body of the simulated world that nobody knows of: cameras see it, arms collide with it, and that is all.
-
-    It is no obstacle of planners and no name in lists and checks. `size_m` as for a part; `at` is its centre. With
-    `mass_kg` it is free, without it is fixed. For tests and demonstrations.
-    """
-
-    shape: Literal["box", "cylinder", "sphere"]
-    size_m: tuple[Length, ...]
-    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")] | None = None
-    at: FramedPlacement = FramedPlacement()
-    color: Color = "#a04040"
 
 
 def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[float, float]:

@@ -20,6 +20,13 @@ _UPRIGHT = 1.0 - 1e-9
 Length = Annotated[float, Meta(gt=0.0, description="A length in metres, above 0", extra_json_schema=_METRES)]
 Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or more", extra_json_schema=_RADIANS)]
 Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
+ItemName = Annotated[
+    str,
+    Meta(
+        pattern="^[a-z][a-z0-9_]{0,63}(/[a-z][a-z0-9_]{0,63})?$",
+        description="A name in the cell, or on a module: `vice/jaws`",
+    ),
+]
 Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
 Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more", extra_json_schema=_METRES)]
 PositionXyz = Annotated[Vector3, Meta(description="A point in metres", extra_json_schema=_METRES)]

@@ -12,6 +12,7 @@ from engine.document.behavior import BehaviorDocument
 from engine.document.cell import CellDocument
 from engine.document.entries_document import EntriesDocument
 from engine.document.faults import FaultsDocument
+from engine.document.module_document import ModuleDocument
 from engine.document.parameter_spec import any_value
 from engine.document.project_file import ProjectDocument
 from engine.document.substitutes import SubstitutesDocument
@@ -23,6 +24,7 @@ _MODELS = {
     "cell": CellDocument,
     "entries": EntriesDocument,
     "faults": FaultsDocument,
+    "module": ModuleDocument,
     "project": ProjectDocument,
     "substitutes": SubstitutesDocument,
     "sweep": SweepDocument,

@@ -74,7 +74,7 @@ class CellReopening:
         busy = self._busy()
         if busy:
             raise ControlError(busy, where=self._cell.name, hint="wait for its end, or release the stop, then switch")
-        if set(cell.simulated) == set(self._cell.simulated) and cell.source.data == self._cell.source.data:
+        if set(cell.simulated) == set(self._cell.simulated) and cell.content == self._cell.content:
             raise ControlError("these devices are simulated already", where=self._cell.name)
         if self._next.done():
             raise ControlError("the cell is being opened anew already", where=self._cell.name)

@@ -71,14 +71,15 @@ def recorded_substitutes(documents: RecordedDocuments) -> Substitutes | None:
 
 
 def collect_documents(behavior: Behavior, cell: Cell | None = None) -> RecordedDocuments:
-    """Read the documents of a run: the behavior, all that it references, the cell and its entries.
+    """Read the documents of a run: the behavior, all that it references, the cell with its modules and entries.
 
     Raises:
         RecordingError: one of the files can no longer be read.
     """
     texts = dict(_texts(behavior))
     cell_file = cell.file.resolve() if cell is not None else None
-    for file in (cell_file, cell.seed_file if cell is not None else None):
+    modules = [module.file for module in cell.modules.values()] if cell is not None else []
+    for file in (cell_file, cell.seed_file if cell is not None else None, *modules):
         if file is not None:
             texts[file.resolve()] = _read(file)
     folder = Path(os.path.commonpath([file.parent for file in texts]))

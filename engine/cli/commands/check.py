@@ -29,6 +29,7 @@ from engine.cli.output.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import SECTIONS, load_entries
+from engine.document.module_document import load_module
 from engine.document.project_file import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
 from engine.document.state_catalogue import Catalogue
@@ -43,6 +44,7 @@ _KINDS = (
     # A sweep may name the cell and the faults of its runs.
     ("behavior", "sweep"),
     ("cell", "cell"),
+    ("module", "module"),
     *((key, "entries") for key in SECTIONS.values()),
     ("faults", "faults"),
     ("substitutes", "substitutes"),
@@ -53,7 +55,7 @@ def check(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Behavior, cell, entries, sweep, faults, substitutes or project documents, or FILE.py:NAME.",
+            help="Behavior, cell, module, entries, sweep, faults, substitutes or project documents, or FILE.py:NAME.",
             show_default=False,
         ),
     ] = None,
@@ -171,6 +173,9 @@ def findings_of(
                 return check_cell(load_cell(file))
             case "entries":
                 return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
+            case "module":
+                load_module(file)
+                return ()
             case kind:
                 _load_of_runs(kind, file)
                 return ()
@@ -233,7 +238,7 @@ def _target_findings(
 
 
 def document_kind(file: Path) -> str:
-    """Return the kind of a document, by its keys: behavior, cell, entries, sweep, faults or substitutes.
+    """Return the kind of a document, by its keys: behavior, cell, module, entries, sweep, faults or substitutes.
 
     Raises:
         DocumentError: the document cannot be read, or is of no known kind.
@@ -246,7 +251,7 @@ def document_kind(file: Path) -> str:
     if recovered.mistakes:
         raise recovered.mistakes[0]
     raise DocumentError(
-        "this is not a behavior, cell, entries, sweep, faults or substitutes document",
+        "this is not a behavior, cell, module, entries, sweep, faults or substitutes document",
         where=Position(file=str(file), line=1, column=1),
         hint="a behavior has `root:`, a cell has `cell:`, a sweep has `behavior:`",
     )

@@ -130,3 +130,46 @@ def test_a_json_document_has_its_items(tmp_path: Path) -> None:
     (item,) = items_of_cell(load_cell(tmp_path / "cell.json"), name="bench").items
     assert (item.path, item.line) == ("parts/ball", 3)
     assert item.text.startswith('"ball": {"shape": "sphere",')
+
+
+MODULE = """\
+flexcell: 1
+module: rack
+frames: {slot: {parent: shelf}}
+fixtures:
+  # Of wood.
+  shelf: {shape: box, size_m: [0.3, 0.2, 0.1]}
+parts: {block: {shape: box, size_m: [0.1, 0.1, 0.1], mass_kg: 0.1, at: {frame: slot}}}
+"""
+DOCKED = """\
+connectors:
+  dock: {parent: table}
+modules:
+  store: {module: racks/rack/, connector: dock}
+"""
+
+
+def test_what_stands_on_a_module_belongs_to_it_and_has_the_lines_of_its_document(tmp_path: Path) -> None:
+    folder = tmp_path / "racks" / "rack"
+    folder.mkdir(parents=True)
+    (folder / "module.yaml").write_text(MODULE, encoding="utf-8")
+    (tmp_path / "cell.yaml").write_text(CELL + DOCKED, encoding="utf-8")
+    cell = load_cell(tmp_path / "cell.yaml")
+    found = items(cell)
+    assert [(path, item.kind, item.model) for path, item in found.items() if item.owner == "modules/store"] == [
+        ("fixtures/store/shelf", "fixture", "box"),
+        ("parts/store/block", "part", "box"),
+        ("frames/store/slot", "frame", "in store/shelf"),
+    ]
+    shelf, module, dock = (found[path] for path in ("fixtures/store/shelf", "modules/store", "connectors/dock"))
+    assert (shelf.text, shelf.line, shelf.file) == (
+        "shelf: {shape: box, size_m: [0.3, 0.2, 0.1]}",
+        6,
+        "racks/rack/module.yaml",
+    )
+    assert (module.kind, module.model, module.file) == ("module", "rack", "")
+    assert module.text == "store: {module: racks/rack/, connector: dock}"
+    assert dock.text == "dock: {parent: table}"
+    assert not items_of_cell(cell, name="bench").changed
+    (folder / "module.yaml").write_text(MODULE.replace("0.3", "0.4"), encoding="utf-8")
+    assert items_of_cell(cell, name="bench").changed

@@ -410,16 +410,17 @@ export interface CellFit {
   readonly obstacle: string
 }
 
-/** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1. */
+/** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1; `file` is the document of its module, empty for that of the cell. */
 export interface CellItem {
   readonly path: string
-  readonly kind: "camera" | "fixture" | "frame" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
+  readonly kind: "camera" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
   readonly name: string
   readonly model: string
   readonly owner: string
   readonly topics: readonly string[]
   readonly text: string
   readonly line: number
+  readonly file: string
 }
 
 /** The items of a cell in the order of its document, which is `file`. `changed` says that the document has changed since the cell was opened: the items are those of the open cell, and their lines those of the document now. */

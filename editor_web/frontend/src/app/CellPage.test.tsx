@@ -22,6 +22,7 @@ const CELL: CellItems = {
       topics: ['left/joint_state', 'left/status'],
       text: 'left:\n  model: panda',
       line: 6,
+      file: '',
     },
     {
       path: 'robots/left/gripper',
@@ -32,8 +33,9 @@ const CELL: CellItems = {
       topics: [],
       text: 'gripper: {model: panda_hand}',
       line: 7,
+      file: '',
     },
-    { path: 'parts/plate', kind: 'part', name: 'plate', model: 'box', owner: '', topics: [], text: '', line: 0 },
+    { path: 'parts/plate', kind: 'part', name: 'plate', model: 'box', owner: '', topics: [], text: '', line: 0, file: '' },
   ],
 }
 

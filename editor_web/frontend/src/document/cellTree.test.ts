@@ -25,7 +25,7 @@ const STATE: CellStateFrame = {
 }
 
 function item(path: string, kind: CellItem['kind'], told: Partial<CellItem> = {}): CellItem {
-  return { path, kind, name: path.split('/').at(-1) ?? '', model: 'box', owner: '', topics: [], text: '', line: 1, ...told }
+  return { path, kind, name: path.split('/').at(-1) ?? '', model: 'box', owner: '', topics: [], text: '', line: 1, file: '', ...told }
 }
 
 const ITEMS = [
@@ -77,6 +77,22 @@ it('shows a frame that the document names once, with its lines, whether or not i
     expect(nodeAt(tree, 'frames/dock')?.item?.path).toBe('frames/dock')
     expect(tree.at(-1)?.children.filter((node) => node.name === 'dock')).toHaveLength(1)
   }
+})
+
+it('puts what stands on a module below it, by its name there, and its frames among the frames', () => {
+  const docked = [
+    item('modules/vice', 'module', { model: 'vice' }),
+    item('fixtures/vice/jaw', 'fixture', { name: 'vice/jaw', owner: 'modules/vice' }),
+    item('parts/vice/block', 'part', { name: 'vice/block', owner: 'modules/vice' }),
+    item('frames/vice/slot', 'frame', { name: 'vice/slot', owner: 'modules/vice', model: 'in vice/jaw' }),
+  ]
+  const tree = cellTree(docked, ['vice', 'vice/slot', 'vice/block'])
+  expect(nodeAt(tree, 'modules/vice')?.children.map((node) => [node.address, node.name])).toEqual([
+    ['fixtures/vice/jaw', 'jaw'],
+    ['parts/vice/block', 'block'],
+  ])
+  expect(nodeAt(tree, 'frames/vice/slot')?.detail).toBe('in vice/jaw')
+  expect(nodeAt(tree, 'frames/vice/block')).toBeUndefined()
 })
 
 it('finds a line, and what is above it', () => {

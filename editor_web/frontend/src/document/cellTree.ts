@@ -1,4 +1,4 @@
-/** The tree of a cell: its items by kind, a tool below its robot, and the frames by what they belong to. Pure. */
+/** The tree of a cell: its items by kind, a tool below its robot, what stands on a module below that, and the frames by what they belong to. Pure. */
 import type { CellItem, CellStateFrame, DeviceNow, Pose, RobotLive } from '../api/types'
 import { deviceMode } from './devices'
 import { lookup, type Dict } from './dict'
@@ -29,6 +29,7 @@ export interface CellNow {
 /** The group of each kind of item; a tool stands below the robot that carries it, a frame among all frames. */
 const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool' | 'frame'>, string>> = {
   robot: 'Robots',
+  module: 'Modules',
   fixture: 'Fixtures',
   part: 'Parts',
   camera: 'Cameras',
@@ -54,9 +55,9 @@ export function cellTree(items: readonly CellItem[], frames: readonly string[]):
 }
 
 function nodeOf(item: CellItem, items: readonly CellItem[]): CellNode {
-  const children = items.filter((other) => other.owner === item.path).map((other) => nodeOf(other, items))
-  // A tool has no name of its own in a cell: it is the gripper of its robot.
-  const name = item.kind === 'tool' ? nameOfPath(item.path) : item.name
+  const children = items.filter((other) => other.owner === item.path && other.kind !== 'frame').map((other) => nodeOf(other, items))
+  // A tool has no name of its own in a cell: it is the gripper of its robot. What stands on a module is named below it.
+  const name = item.kind === 'tool' ? nameOfPath(item.path) : item.owner ? restOfPath(item.name) : item.name
   return { address: item.path, kind: item.kind, name, detail: item.model === name ? '' : item.model, item, children }
 }
 

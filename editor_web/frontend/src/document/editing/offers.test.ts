@@ -39,6 +39,7 @@ const item = (kind: CellItem['kind'], path: string, model: string): CellItem => 
   topics: [],
   text: '',
   line: 0,
+  file: '',
 })
 
 const ROBOT = key({ type: 'string', cell_name: 'robot' })

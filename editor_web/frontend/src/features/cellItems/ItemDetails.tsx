@@ -16,6 +16,7 @@ const KINDS: Readonly<Record<CellNode['kind'], string>> = {
   group: 'Group',
   robot: 'Robot',
   tool: 'Tool',
+  module: 'Module',
   fixture: 'Fixture',
   part: 'Part',
   camera: 'Camera',
@@ -189,7 +190,7 @@ function Lines({ item, cell }: { readonly item: CellItem; readonly cell: CellIte
     <section aria-label="Document">
       <Stack gap={4}>
         <Title order={3} size="sm">
-          {item.line > 0 ? `${cell.file}, line ${item.line}` : cell.file}
+          {item.line > 0 ? `${item.file || cell.file}, line ${item.line}` : item.file || cell.file}
         </Title>
         {cell.changed && (
           <Alert color="yellow" p="xs">

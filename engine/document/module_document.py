@@ -1,0 +1,89 @@
+"""Module documents: what stands on a module of a cell, relative to the frame of the module itself.
+
+A module is a folder with a `module.yaml`. Lengths are in metres, angles in radians, masses in kilograms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.cell_bodies import Fixture, PartSpec, require_sizes
+from engine.document.cell_frames import WORLD, FrameSpec, require_frames
+from engine.document.cell_perception import DepthCamera
+from engine.document.placement import Name
+from engine.document.text.decoding import StrictModel, decode_document
+from engine.document.text.document_file import DocumentFile
+from engine.document.text.yaml_source import DataPath, load_source
+from engine.errors import DocumentError
+
+MODULE_FILE = "module.yaml"
+
+
+class ModuleDocument(StrictModel, frozen=True, kw_only=True):
+    """A module as written: everything stands in the frame of the module, unless it names another frame of it."""
+
+    flexcell: Literal[1]
+    module: Name
+    description: str = ""
+    frames: Annotated[
+        dict[Name, FrameSpec], Meta(description="Frames of the module: slots, grips, places to dock others")
+    ] = {}
+    fixtures: dict[Name, Fixture] = {}
+    parts: dict[Name, PartSpec] = {}
+    cameras: dict[Name, DepthCamera] = {}
+
+    def uses_of_frames(self) -> Iterator[tuple[DataPath, str]]:
+        """Yield in which frames things stand that are no frames, each with its path in the document."""
+        yield from ((("parts", name, "at", "frame"), part.at.frame) for name, part in self.parts.items())
+        yield from ((("cameras", name, "frame"), camera.frame) for name, camera in self.cameras.items())
+
+
+class Module(DocumentFile[ModuleDocument]):
+    """A module document with its file."""
+
+
+def load_module(folder: Path) -> Module:
+    """Read the document of a module.
+
+    Args:
+        folder: Its folder, or the document itself.
+
+    Raises:
+        DocumentError: the file cannot be read or is not a valid module; `where` is the position.
+    """
+    file = folder if folder.suffix else folder / MODULE_FILE
+    source = load_source(file)
+    document = decode_document(source, ModuleDocument)
+    require_sizes(document.fixtures, document.parts, source)
+    require_frames(
+        document.frames,
+        source,
+        fixtures=document.fixtures,
+        uses=document.uses_of_frames(),
+        taken={**dict.fromkeys(document.parts, "part"), **dict.fromkeys(document.cameras, "camera")},
+        whole="module",
+    )
+    for path in (*(("frames", name, "parent") for name in document.frames), *_frame_paths(document)):
+        if _value(source.data, path) == WORLD:
+            raise DocumentError(
+                f"`{path[1]}` stands in `{WORLD}`, which a module does not know",
+                where=source.position(path),
+                hint=f"remove `{path[-1]}`: it stands in the frame of the module then, which the cell places",
+            )
+    return Module(document=document, file=file, source=source)
+
+
+def _frame_paths(document: ModuleDocument) -> Iterator[DataPath]:
+    yield from ((("fixtures", name, "at", "frame")) for name in document.fixtures)
+    yield from (path for path, _ in document.uses_of_frames())
+
+
+def _value(data: object, path: DataPath) -> object:
+    """Return the value at a path of plain data; None if it is not written there."""
+    for step in path:
+        data = data.get(step) if isinstance(data, dict) else None
+    return data
