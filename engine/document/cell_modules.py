@@ -130,7 +130,9 @@ def with_positions(source: DocumentSource, modules: Mapping[str, Module]) -> Doc
         written = module.source.place.children or {}
         for section in _SECTIONS:
             items = (written[section].children if section in written else None) or {}
-            placed = {f"{name}/{key}": _in_file(place, module.source.file) for key, place in items.items()}
+            placed: dict[str | int, PositionTree] = {
+                f"{name}/{key}": _in_file(place, module.source.file) for key, place in items.items()
+            }
             if placed:
                 add(section, placed, beside=docked_here)
     return DocumentSource(file=source.file, data=source.data, place=_with_children(root, sections))

@@ -17,7 +17,7 @@ from engine.document.cell_perception import DepthCamera
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
-from engine.document.text.yaml_source import DataPath, load_source
+from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 
 MODULE_FILE = "module.yaml"
@@ -67,8 +67,8 @@ def load_module(folder: Path) -> Module:
         taken={**dict.fromkeys(document.parts, "part"), **dict.fromkeys(document.cameras, "camera")},
         whole="module",
     )
-    for path in (*(("frames", name, "parent") for name in document.frames), *_frame_paths(document)):
-        if _value(source.data, path) == WORLD:
+    for path, frame in _parents(document):
+        if frame == WORLD and _is_written(source, path):
             raise DocumentError(
                 f"`{path[1]}` stands in `{WORLD}`, which a module does not know",
                 where=source.position(path),
@@ -77,13 +77,18 @@ def load_module(folder: Path) -> Module:
     return Module(document=document, file=file, source=source)
 
 
-def _frame_paths(document: ModuleDocument) -> Iterator[DataPath]:
-    yield from ((("fixtures", name, "at", "frame")) for name in document.fixtures)
-    yield from (path for path, _ in document.uses_of_frames())
+def _parents(document: ModuleDocument) -> Iterator[tuple[DataPath, str]]:
+    """Yield in which frame everything stands, each with its path in the document."""
+    yield from ((("frames", name, "parent"), frame.parent) for name, frame in document.frames.items())
+    yield from ((("fixtures", name, "at", "frame"), fixture.at.frame) for name, fixture in document.fixtures.items())
+    yield from document.uses_of_frames()
 
 
-def _value(data: object, path: DataPath) -> object:
-    """Return the value at a path of plain data; None if it is not written there."""
+def _is_written(source: DocumentSource, path: DataPath) -> bool:
+    """Return whether a value is in the document, and not a default."""
+    place = source.place
     for step in path:
-        data = data.get(step) if isinstance(data, dict) else None
-    return data
+        if place.children is None or step not in place.children:
+            return False
+        place = place.children[step]
+    return True

@@ -86,7 +86,7 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "must_cover",
         "regions must be covered, but the cell has no camera",
     ),
-    "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not support `modules`"),
+    "bus": ("parts:", "bus: {}\nparts:", "bus", "this version does not support `bus`"),
 }
 
 
