@@ -19,6 +19,7 @@ from engine.document import parse_behavior
 from engine.document.cell import load_cell
 from engine.document.entries_document import load_entries
 from engine.document.faults import parse_faults
+from engine.document.module_document import load_module
 from engine.document.substitutes import parse_substitutes
 from engine.document.sweep import parse_sweep
 from engine.messages.demonstrations import Trajectory
@@ -43,6 +44,7 @@ TRIGGERS = "\ntriggers:"
 NOTES = "canvas_notes:"
 TAGS = "\ntags:"
 FACTORS = "\nfactors:"
+MODULE = "\nmodule:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:", "unknown_bodies:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
@@ -115,6 +117,14 @@ def test_a_robot_is_the_one_in_the_examples(text: str) -> None:
     """Which a test simulates; comments aside."""
     whole = (EXAMPLES / "lifter" / "robot.yaml").read_text(encoding="utf-8")
     assert re.sub(r" +#.*", "", text) == re.sub(r" +#.*", "", whole)
+
+
+@shown(holding=MODULE)
+def test_a_module_is_the_one_in_the_examples(text: str) -> None:
+    """Which the cells of the examples dock."""
+    file = EXAMPLES / text.partition("\n")[0].removeprefix("# ")
+    assert text.partition("\n")[2] == file.read_text(encoding="utf-8")
+    load_module(file)
 
 
 @shown(*PARTS_OF_TREES)
@@ -196,7 +206,7 @@ def test_free_notes_are_taken_beside_a_behavior(tmp_path: Path, text: str) -> No
 
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS, MODULE)
     begun = (NOTES, *PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:", "require:")
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []
