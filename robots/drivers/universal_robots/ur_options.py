@@ -61,6 +61,14 @@ class UrOptions(DriverOptions, frozen=True, kw_only=True, tag="universal_robots"
     path_tolerance_rad: Annotated[
         float, Meta(gt=0.0, le=1.0, description="How far a joint may be behind its set point; it is by the lookahead")
     ] = 0.3
+    start_s: Annotated[
+        float,
+        Meta(
+            ge=1.0,
+            le=12.0,
+            description="Seconds that the control program may take until it runs and has taken tool and payload",
+        ),
+    ] = 10.0
     watchdog_hz: Annotated[
         float, Meta(ge=1.0, le=100.0, description="Without a set point for a period of it the controller stops the arm")
     ] = 10.0
