@@ -147,7 +147,9 @@ def test_the_check_knows_how_many_there_are_also_while_the_arm_is_simulated(
 ) -> None:
     cell = load_cell(written(tmp_path, emulator))
     assert InstalledModels().summary(cell, ARM).digital_inputs == 2
-    assert digital_inputs(with_simulated_devices(cell, (ARM,)), ARM, of_model=0) == 2
+    cell.file.write_text(cell.file.read_text() + "world: {kind: mujoco}\n")
+    simulated = with_simulated_devices(load_cell(cell.file), (ARM,))
+    assert digital_inputs(simulated, ARM, of_model=0) == 2
 
 
 @pytest.mark.parametrize(
