@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -219,4 +220,6 @@ class ArmServer:
             self._runner.lost_reason = ""
             self._runner.status = DeviceStatus.DISCONNECTED
             self._runner.changed()
-            await self._runner.loading.finished()
+            # Its thread is left behind where it does not end: a cell has to close.
+            with suppress(RobotError):
+                await self._runner.loading.finished()

@@ -30,6 +30,7 @@ from robots.drivers.abb.simple_message import (
     START_DOWNLOAD,
     TrajectoryPoint,
 )
+from robots.drivers.emulation.input_wires import InputWires
 from robots.drivers.emulation.plant import ALONE, Plant
 from robots.drivers.emulation.side_channel import Request, SideChannel
 from robots.drivers.emulation.wire_faults import WireFaults
@@ -270,8 +271,10 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
         places = {f"{name}_port": port.port for name, port in ports.items()}
         ready({"host": host, **places, "side_port": await side.open()})
         # Axes of its own follow when somebody asks; those of a world need their set points.
+        wires = InputWires(plant.inputs, signals.set)
         while plant.arm is not None:
             controller.advance()
+            wires.follow()
             await clock.sleep_until(clock.now_s() + _CYCLE_S)
         await asyncio.Event().wait()
     finally:

@@ -19,7 +19,7 @@ from robots.drivers.universal_robots.emulator.emulated_arm import (
 
 REGISTERS = 48
 _INT32 = 1 << 31
-# Standard outputs, then those of the tool: numbered as drivers do.
+# Standard outputs or inputs, then those of the tool: numbered as drivers do.
 _WIRED_BITS = (*range(8), 16, 17)
 _MOST_SECONDARY = 10
 
@@ -128,6 +128,12 @@ class ControllerState:
         for output, bit in enumerate(_WIRED_BITS):
             if changed >> bit & 1:
                 self._on_output(output, on=bool(self.digital_outputs >> bit & 1))
+
+    def set_digital_input(self, number: int, *, on: bool) -> None:
+        """Turn an input on or off: 0 to 7 standard, then those of the tool; nothing for others."""
+        if number < len(_WIRED_BITS):
+            bit = 1 << _WIRED_BITS[number]
+            self.digital_inputs = self.digital_inputs & ~bit | (bit if on else 0)
 
     def set_speed_fraction(self, fraction: float) -> None:
         """Move the speed slider."""
