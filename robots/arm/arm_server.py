@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -220,6 +219,4 @@ class ArmServer:
             self._runner.lost_reason = ""
             self._runner.status = DeviceStatus.DISCONNECTED
             self._runner.changed()
-            # Its thread is left behind where it does not end: a cell has to close.
-            with suppress(RobotError):
-                await self._runner.loading.finished()
+            await self._runner.loading.close()

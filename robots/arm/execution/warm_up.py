@@ -43,13 +43,25 @@ class WarmUp:
         """
         if self._task is None:
             return
-        done, _ = await asyncio.wait((self._task,), timeout=LOADING_LIMIT_S)
-        if not done:
+        if not await self._ends():
             raise RobotError(
                 f"inverse kinematics was not loaded within {LOADING_LIMIT_S:g} s",
                 where=self._name,
                 hint="try again when the computer has less to do: the first load on a machine compiles it",
             )
+
+    async def close(self) -> None:
+        """Return when loading has finished; a thread that does not end in time is left behind."""
+        if self._task is None or await self._ends():
+            return
+        _log.error("%s: closed before inverse kinematics was loaded", self._name)
+        self._task.cancel()
+        await asyncio.wait((self._task,))
+
+    async def _ends(self) -> bool:
+        assert self._task is not None
+        done, _ = await asyncio.wait((self._task,), timeout=LOADING_LIMIT_S)
+        return bool(done)
 
     async def _run(self) -> None:
         try:
