@@ -86,15 +86,15 @@ def digital_outputs(cell: Cell, robot: str, *, of_model: int) -> int:
     Its driver says it, also while the robot is simulated instead; without a driver, or with one that leaves it to the
     model or cannot be loaded, it is `of_model`.
     """
-    return _said_by_driver(cell, robot, lambda driver: driver.digital_outputs, of_model)
+    return _count_of_driver(cell, robot, lambda driver: driver.digital_outputs, of_model)
 
 
 def digital_inputs(cell: Cell, robot: str, *, of_model: int) -> int:
     """Return how many digital inputs the controller of a robot has, as `digital_outputs`."""
-    return _said_by_driver(cell, robot, lambda driver: driver.digital_inputs, of_model)
+    return _count_of_driver(cell, robot, lambda driver: driver.digital_inputs, of_model)
 
 
-def _said_by_driver(
+def _count_of_driver(
     cell: Cell, robot: str, count: Callable[[Driver], Callable[[Any], int] | None], of_model: int
 ) -> int:
     kind = {**cell.document.real_devices, **cell.simulated}.get(robot, "")
