@@ -42,7 +42,7 @@ from engine.skills.planning import MotionTarget
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
 
-CELL = Path(__file__).resolve().parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
+CELL = Path(__file__).resolve().parent / "cells" / "irb4600_near.yaml"
 REACTION_S = 0.25
 """Two images at 15 Hz, what is made of them, and one check of the path."""
 

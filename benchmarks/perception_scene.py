@@ -24,7 +24,7 @@ from robots.vision.cameras.camera import camera_of
 from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from robots.vision.voxel_box import VoxelBox, voxel_box
 
-CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
+CELL = Path(__file__).parent / "cells" / "irb4600_near.yaml"
 _SIZE_PX = (640, 480)
 _HANDS: tuple[Vector3, ...] = ((1.1, 0.2, 1.1), (1.2, 0.0, 1.0), (1.3, 0.5, 1.0), (1.25, 0.1, 1.35), (1.15, 0.35, 0.95))
 

@@ -31,7 +31,7 @@ from robots.vision.occupancy.arm_body import ArmBody
 from robots.vision.occupancy.occupancy_mapper import OccupancyMapper
 from robots.vision.voxel_box import voxel_box
 
-CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
+CELL = Path(__file__).parent / "cells" / "irb4600_near.yaml"
 
 
 def median_ms(work: Callable[[], object], repeats: int) -> float:

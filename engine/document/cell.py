@@ -26,7 +26,7 @@ from engine.document.cell_perception import (
     UnknownBody,
 )
 from engine.document.parameter_spec import ParameterSpec
-from engine.document.placement import FramedPlacement, Name, Placement
+from engine.document.placement import Name, Placement
 from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -131,11 +131,15 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         poses = poses_in_world(self.frames, self.fixtures)
         return {name: poses[name] for name in self.frames}
 
-    def placements(self) -> Iterator[tuple[DataPath, FramedPlacement]]:
-        """Yield where bodies stand that are no frames, each with its path in the document."""
-        yield from ((("parts", name, "at"), part.at) for name, part in self.parts.items())
-        yield from ((("unknown_bodies", name, "at"), body.at) for name, body in self.unknown_bodies.items())
-        yield from ((("robots", name, "base"), robot.base) for name, robot in self.robots.items())
+    def uses_of_frames(self) -> Iterator[tuple[DataPath, str]]:
+        """Yield in which frames things stand that are no frames, each with its path in the document."""
+        yield from ((("parts", name, "at", "frame"), part.at.frame) for name, part in self.parts.items())
+        yield from (
+            (("unknown_bodies", name, "at", "frame"), one.at.frame) for name, one in self.unknown_bodies.items()
+        )
+        yield from ((("robots", name, "base", "frame"), robot.base.frame) for name, robot in self.robots.items())
+        yield from ((("cameras", name, "frame"), camera.frame) for name, camera in self.cameras.items())
+        yield from ((("people", name, "frame"), person.frame) for name, person in self.people.items())
 
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
@@ -149,7 +153,8 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
             unknown_bodies={
                 name: replace(body, at=body.at.in_world(poses)) for name, body in self.unknown_bodies.items()
             },
-            cameras={name: camera.in_frames(named) for name, camera in self.cameras.items()},
+            cameras={name: camera.in_world(poses, named=named) for name, camera in self.cameras.items()},
+            people={name: person.in_world(poses) for name, person in self.people.items()},
         )
 
     @property
@@ -208,7 +213,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_detection_frames(document, source)
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
-    require_frames(document.frames, source, fixtures=document.fixtures, placed=document.placements(), taken=taken)
+    require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
     return Cell(document=document.in_world(), file=file, source=source)
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from engine.document.cell_bodies import Fixture
-from engine.document.placement import FramedPlacement, Placement
+from engine.document.placement import Placement
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError
@@ -52,7 +52,7 @@ def require_frames(
     source: DocumentSource,
     *,
     fixtures: Mapping[str, Fixture],
-    placed: Iterator[tuple[DataPath, FramedPlacement]],
+    uses: Iterator[tuple[DataPath, str]],
     taken: Mapping[str, str],
 ) -> None:
     """Require names of their own, and that everything stands in a frame that leads to the world.
@@ -61,7 +61,7 @@ def require_frames(
         frames: The frames of the cell.
         source: The document.
         fixtures: The fixtures, which are frames too.
-        placed: What stands in a frame and is none, each with the place of its placement in the document.
+        uses: The frames in which things stand that are none, each with its path in the document.
         taken: What else has a name in the world, with what it is.
 
     Raises:
@@ -79,9 +79,9 @@ def require_frames(
     paths: dict[str, DataPath] = {name: ("frames", name, "parent") for name in frames}
     paths |= {name: ("fixtures", name, "at", "frame") for name in fixtures}
     parents = {name: parent for name, (parent, _) in _anchors(frames, fixtures).items()}
-    uses = [(paths[name], parent, known - {name}) for name, parent in parents.items()]
-    uses += [((*path, "frame"), placement.frame, known) for path, placement in placed]
-    for path, frame, possible in uses:
+    required = [(paths[name], parent, known - {name}) for name, parent in parents.items()]
+    required += [(path, frame, known) for path, frame in uses]
+    for path, frame, possible in required:
         if frame not in possible:
             odd = "itself" if frame == path[1] else f"`{frame}`, which is no frame and no fixture of the cell"
             hint = did_you_mean(frame, possible)

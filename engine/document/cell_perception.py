@@ -8,7 +8,18 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from engine.document.placement import Angle, Color, FramedPlacement, Length, Name, Offset, Placement, PositionXyz
+from engine.document.placement import (
+    Angle,
+    Color,
+    FramedPlacement,
+    FrameName,
+    Length,
+    Name,
+    Offset,
+    Placement,
+    PositionXyz,
+    point_in_world,
+)
 from engine.document.text.decoding import StrictModel
 from engine.messages import Pose
 
@@ -51,7 +62,8 @@ class ObjectDetector(StrictModel, frozen=True, kw_only=True):
 class DepthCamera(StrictModel, frozen=True, kw_only=True):
     """A fixed depth camera in the cell, simulated by the world.
 
-    `at` is its position and `look_at` the point in the centre of its image; up in the image is up in the world.
+    `at` is its position and `look_at` the point in the centre of its image, both in `frame`; up in the image is up in
+    the world.
     Distances along the optical axis outside `range_m` are not measured. `noise_m` is the standard deviation at
     1 m; it grows with the square of the distance. With `detect`, which may be `{}`, it detects parts. `driver` is
     `sim`.
@@ -59,6 +71,7 @@ class DepthCamera(StrictModel, frozen=True, kw_only=True):
 
     at: PositionXyz
     look_at: PositionXyz
+    frame: FrameName = "world"
     size_px: tuple[Pixels, Pixels] = (640, 480)
     fov_rad: FieldOfView = 1.0
     rate_hz: Rate = 10.0
@@ -67,11 +80,21 @@ class DepthCamera(StrictModel, frozen=True, kw_only=True):
     detect: ObjectDetector | None = None
     driver: Annotated[str, Meta(pattern="^sim$", description="`sim`")] = "sim"
 
-    def in_frames(self, frames: Mapping[str, Pose]) -> DepthCamera:
-        """Return the same camera, which detects in a frame of the cell where it names one."""
-        if self.detect is None or self.detect.frame not in frames:
-            return self
-        return replace(self, detect=replace(self.detect, frame_at=Placement.of(frames[self.detect.frame])))
+    def in_world(self, poses: Mapping[str, Pose], *, named: Mapping[str, Pose]) -> DepthCamera:
+        """Return the same camera in the world, which detects in a frame of the cell where it names one.
+
+        Args:
+            poses: The poses in the world of all that something may stand in.
+            named: Those of the frames of the cell.
+        """
+        camera = self
+        if camera.frame != "world":
+            base = poses[camera.frame]
+            at, look_at = (point_in_world(base, point) for point in (camera.at, camera.look_at))
+            camera = replace(camera, at=at, look_at=look_at, frame="world")
+        if camera.detect is None or camera.detect.frame not in named:
+            return camera
+        return replace(camera, detect=replace(camera.detect, frame_at=Placement.of(named[camera.detect.frame])))
 
 
 _ROUNDING_M = 1e-6
@@ -158,7 +181,7 @@ def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[
 
 
 class Person(StrictModel, frozen=True, kw_only=True):
-    """One arm of a person in a simulated cell: it reaches from `shoulder` and rests at `hand_rests`.
+    """One arm of a person in a simulated cell: it reaches from `shoulder` and rests at `hand_rests`, both in `frame`.
 
     The arm consists of two capsules and a ball with the dimensions of an adult; it gives way to what pushes it and
     stops at fixtures. `forearm_m` ends at the centre of the hand, to which `hand_rests` and targets refer.
@@ -166,6 +189,7 @@ class Person(StrictModel, frozen=True, kw_only=True):
 
     shoulder: PositionXyz
     hand_rests: PositionXyz
+    frame: FrameName = "world"
     upper_arm_m: Length = 0.32
     forearm_m: Length = 0.36
     radius_m: Length = 0.05
@@ -175,3 +199,11 @@ class Person(StrictModel, frozen=True, kw_only=True):
     def reach_m(self) -> tuple[float, float]:
         """Minimum and maximum distance of the hand from the shoulder."""
         return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)
+
+    def in_world(self, poses: Mapping[str, Pose]) -> Person:
+        """Return the same person in the world; `poses` are those in the world of all that something may stand in."""
+        if self.frame == "world":
+            return self
+        base = poses[self.frame]
+        shoulder, hand_rests = (point_in_world(base, point) for point in (self.shoulder, self.hand_rests))
+        return replace(self, shoulder=shoulder, hand_rests=hand_rests, frame="world")

@@ -23,6 +23,9 @@ Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-
 Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
 Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more", extra_json_schema=_METRES)]
 PositionXyz = Annotated[Vector3, Meta(description="A point in metres", extra_json_schema=_METRES)]
+FrameName = Annotated[
+    str, Meta(min_length=1, description="What it is relative to: `world`, a named frame, or a fixture")
+]
 RotationRpy = Annotated[Vector3, Meta(description="Angles in radians, about x, y, z", extra_json_schema=_RADIANS)]
 
 
@@ -45,15 +48,18 @@ class Placement(StrictModel, frozen=True, kw_only=True):
 class FramedPlacement(Placement, frozen=True, kw_only=True):
     """A pose in a frame of the cell; in a `Cell` that was loaded, it is in the world."""
 
-    frame: Annotated[
-        str, Meta(min_length=1, description="What it is relative to: `world`, a named frame, or a fixture")
-    ] = "world"
+    frame: FrameName = "world"
 
     def in_world(self, frames: Mapping[str, Pose]) -> FramedPlacement:
         """Return the same place in the world; `frames` are the poses of all frames in the world."""
         if self.frame == "world":
             return self
         return FramedPlacement.of(compose_poses(frames[self.frame], self.pose()))
+
+
+def point_in_world(frame: Pose, point: Vector3) -> Vector3:
+    """Return where a point of a frame is, whose pose in the world is given."""
+    return compose_poses(frame, Pose(xyz=point)).xyz
 
 
 def _roll_pitch_yaw(xyzw: Quaternion) -> Vector3:

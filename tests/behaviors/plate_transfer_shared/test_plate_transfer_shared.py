@@ -1,8 +1,9 @@
-"""A person reaches into the way of the plate: the arm goes around or waits, and never touches the person."""
+"""A person reaches into the path of the plate: the arm goes around or waits, and meets the person at rest if at all."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -10,6 +11,7 @@ import pytest
 
 from engine.cell.open_cell import OpenCell
 from engine.event import GoalFinished
+from engine.messages import JointState
 from engine.runtime.run import Run
 from engine.skills.people import ContactCount, CountContacts, Reach
 from engine.skills.planning import FreeMotionResult
@@ -21,21 +23,34 @@ BEHAVIOR = "plate_transfer_shared/plate_transfer_shared.yaml"
 CELL = "irb4600_shared"
 LEFT_M = (1.1, 0.7, 0.704)
 REST_RAD_S = 0.02
+MEETING_S = 0.0
+"""When the hand sets out so that an arm at full speed, which only brakes before what it predicts, meets it."""
 TRANSFER = "root/carry/transfer"
 QUICK: dict[str, object] = {"line_speed_m_s": 0.4}
 """The straight ways are not what these tests are about."""
-_LOOK_S = 0.05
+_LOOK_S = 0.01
+# Beyond friction, noise and what a push against a resting arm does.
+_MOVING_RAD_S = 0.05
 
 
 class Contacts:
-    """The physics' count of contacts with the person, to the end of a run."""
+    """The physics' count of contacts with the person, to the end of a run.
+
+    `in_motion` are those that began while the arm moved.
+    """
 
     def __init__(self) -> None:
         self.last: ContactCount | None = None
+        self.in_motion = 0
 
     async def __call__(self, run: Run, cell: OpenCell) -> None:
+        speed_rad_s = 0.0
         while True:
-            self.last = await cell.bus.call(CountContacts(person="visitor"), to="cell")
+            before, self.last = self.last, await cell.bus.call(CountContacts(person="visitor"), to="cell")
+            if before is not None and speed_rad_s > _MOVING_RAD_S:
+                self.in_motion += self.last.contacts - before.contacts
+            joints = cell.bus.topic("arm/joint_state", JointState).latest
+            speed_rad_s = max(map(abs, joints.velocity_rad_s)) if joints is not None else 0.0
             await cell.bus.clock.sleep(_LOOK_S)
 
     @property
@@ -72,6 +87,33 @@ def test_a_hand_in_the_way_is_gone_around_and_the_plate_lies_straight_on_the_lef
     assert went.replans + went.reused >= 1
     assert contacts.number == 0
     assert done.greatest_last_speed_rad_s < REST_RAD_S
+
+
+@pytest.mark.parametrize("after_s", [MEETING_S, *map(nightly, (0.2, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2))])
+def test_whenever_a_person_comes_the_arm_drives_into_nobody(tmp_path: Path, after_s: float) -> None:
+    """Braking alone is too late for some of these: the hand comes from the side into a path that was free."""
+    contacts = Contacts()
+    done = Application(
+        behavior=BEHAVIOR, cell=shipped_cell(CELL), parameters={"person_after_s": after_s}, meanwhile=contacts
+    )
+    result = done.run(tmp_path)
+    assert (result.outcome, causes(result)) == ("finished", "")
+    assert contacts.in_motion == 0
+
+
+def test_without_monitoring_of_the_distance_the_arm_drives_into_who_comes(tmp_path: Path) -> None:
+    """Or the test above would show nothing."""
+    contacts = Contacts()
+    cell = shipped_cell(CELL)
+    document = msgspec.structs.replace(cell.document, speed_and_separation_monitoring=None)
+    done = Application(
+        behavior=BEHAVIOR,
+        cell=replace(cell, document=document),
+        parameters={"person_after_s": MEETING_S},
+        meanwhile=contacts,
+    )
+    done.run(tmp_path)
+    assert contacts.in_motion > 0
 
 
 def test_nobody_in_the_way_is_nothing_to_stop_for(tmp_path: Path) -> None:

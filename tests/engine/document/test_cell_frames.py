@@ -107,7 +107,7 @@ def test_bodies_and_robots_stand_in_frames_and_on_fixtures(tmp_path: Path) -> No
     assert cell.parts["plate"].at.xyz == pytest.approx((1.4, 0.6, 0.72))
     assert cell.parts["plate"].at.rpy == pytest.approx((0.0, 0.0, math.pi / 2.0))
     assert cell.robots["left"].base.xyz == pytest.approx((1.0, 0.0, 0.8))
-    assert {each.frame for _, each in cell.placements()} == {"world"}
+    assert {frame for _, frame in cell.uses_of_frames()} == {"world"}
     assert cell.in_world() == cell
 
 
@@ -132,6 +132,26 @@ def test_a_camera_detects_in_a_named_frame(tmp_path: Path) -> None:
     assert cell.in_world() == cell
     (tmp_path / "cell.yaml").write_text(BODIES + CAMERA.format(", frame_at: {xyz: [1, 0, 0]}"), encoding="utf-8")
     with pytest.raises(DocumentError, match="detects in the frame `corner` of the cell, whose pose is known"):
+        load_cell(tmp_path / "cell.yaml")
+
+
+IN_CORNER = """\
+occupancy: {center_m: [0, 0, 0], size_m: [8, 8, 8]}
+cameras: {eye: {frame: corner, at: [1, 0, 1.3], look_at: [0, 0, 0]}}
+people: {visitor: {frame: corner, shoulder: [0, 1, 0.5], hand_rests: [0, 0.6, 0.3]}}
+"""
+
+
+def test_cameras_and_people_stand_in_frames(tmp_path: Path) -> None:
+    """The corner is turned by 90°: what is before it along x is along y of the world."""
+    (tmp_path / "cell.yaml").write_text(BODIES + IN_CORNER, encoding="utf-8")
+    cell = load_cell(tmp_path / "cell.yaml").document
+    eye, visitor = cell.cameras["eye"], cell.people["visitor"]
+    assert (*eye.at, *eye.look_at) == pytest.approx((2.0, 1.0, 2.0, 2.0, 0.0, 0.7))
+    assert (*visitor.shoulder, *visitor.hand_rests) == pytest.approx((1.0, 0.0, 1.2, 1.4, 0.0, 1.0))
+    assert cell.in_world() == cell
+    (tmp_path / "cell.yaml").write_text(BODIES + IN_CORNER.replace("frame: corner, s", "frame: plate, s"), "utf-8")
+    with pytest.raises(DocumentError, match=r"cell\.yaml:15:27: `visitor` stands in `plate`, which is no frame"):
         load_cell(tmp_path / "cell.yaml")
 
 
