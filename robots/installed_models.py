@@ -40,7 +40,7 @@ class InstalledModels:
 
     def summary(self, cell: Cell, robot: str) -> RobotSummary:
         """Return the capabilities of a robot of the cell; raises CellError or DocumentError for an invalid model."""
-        from engine.cell.drivers import digital_outputs
+        from engine.cell.drivers import digital_inputs, digital_outputs
         from robots.model.mechanics.link_names import link_names
         from robots.model.registry import model_of_entry
 
@@ -51,7 +51,7 @@ class InstalledModels:
             joints=tuple(zip(model.limits.lower_rad, model.limits.upper_rad, strict=True)),
             tool=kind_of_mechanism(model.tool.kind).name if model.tool is not None else None,
             digital_outputs=digital_outputs(cell, robot, of_model=model.digital_outputs),
-            digital_inputs=model.digital_inputs,
+            digital_inputs=digital_inputs(cell, robot, of_model=model.digital_inputs),
         )
 
     def drawn(self, cell: Cell) -> StaticCell:

@@ -7,7 +7,7 @@ from functools import partial
 from msgspec.structs import replace
 
 from engine.bus import SkillBus
-from engine.cell.drivers import digital_outputs
+from engine.cell.drivers import digital_inputs, digital_outputs
 from engine.clock import Clock
 from engine.document import Cell
 from engine.errors import CellError
@@ -51,7 +51,7 @@ def new_world(
             hint="remove `separation`, and use the safety functions of the controller",
         )
     scene = build_scene(cell.document, seed=seed, resolve=cell.resolve)
-    scene = replace(scene, separation=rule, arms=tuple(_with_outputs(cell, arm) for arm in scene.arms))
+    scene = replace(scene, separation=rule, arms=tuple(_with_signals(cell, arm) for arm in scene.arms))
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
@@ -100,9 +100,14 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
     )
 
 
-def _with_outputs(cell: Cell, arm: ArmPlacement) -> ArmPlacement:
-    """Return the arm with the outputs of its controller, which its driver knows even while the arm is simulated."""
-    return replace(arm, digital_outputs=digital_outputs(cell, arm.name, of_model=arm.robot().digital_outputs))
+def _with_signals(cell: Cell, arm: ArmPlacement) -> ArmPlacement:
+    """Return the arm with outputs and inputs of its controller, which its driver knows even while it is simulated."""
+    model = arm.robot()
+    return replace(
+        arm,
+        digital_outputs=digital_outputs(cell, arm.name, of_model=model.digital_outputs),
+        digital_inputs=digital_inputs(cell, arm.name, of_model=model.digital_inputs),
+    )
 
 
 def _outputs(cell: Cell, world: SimWorld, placement: ArmPlacement) -> OutputServices | None:

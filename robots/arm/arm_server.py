@@ -219,4 +219,4 @@ class ArmServer:
             self._runner.lost_reason = ""
             self._runner.status = DeviceStatus.DISCONNECTED
             self._runner.changed()
-            await self._runner.loading.finished()
+            await self._runner.loading.close()

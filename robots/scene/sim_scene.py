@@ -28,8 +28,8 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     `model` and `gripper` are names or folders of models; `gripper` is None for a bare flange.
     `calibration` is the path of the arm's factory calibration file. A `driven_tool` has a driver of its own: the world
     simulates its body, with its fingers at rest, and neither commands it nor publishes its state. A `driven` arm has a
-    driver too: the world places its body where the driver measures it, and simulates no motors. `digital_outputs` are
-    those of its controller, None for as many as the model has.
+    driver too: the world places its body where the driver measures it, and simulates no motors. `digital_outputs` and
+    `digital_inputs` are those of its controller, None for as many as the model has.
     """
 
     name: str
@@ -41,6 +41,7 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     driven_tool: bool = False
     driven: bool = False
     digital_outputs: int | None = None
+    digital_inputs: int | None = None
 
     def robot(self) -> RobotModel:
         """Return the model of the arm with its tool.

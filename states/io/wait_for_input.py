@@ -24,7 +24,7 @@ class WaitForInput(State, frozen=True, kw_only=True):
     """Wait until an input has a value; it ends at once where it has.
 
     The input is given by its number (`input`) or by the name that the cell gives it (`name`). Inputs of real
-    controllers are read 100 times a second: a shorter pulse may be missed.
+    controllers are read 100 times a second, those of ABB twice: a shorter pulse may be missed.
     """
 
     state_name: ClassVar[str] = "io.WaitForInput"

@@ -8,7 +8,13 @@ from engine.cell.drivers.cell_schema import cell_schema_text
 from engine.cell.drivers.device_context import DeviceContext
 from engine.cell.drivers.device_report import DeviceReport, RoundTrip
 from engine.cell.drivers.driver import DrivenDevice, Driver, DriverOptions
-from engine.cell.drivers.driver_assignments import AssignedDriver, assigned_drivers, digital_outputs, written_drivers
+from engine.cell.drivers.driver_assignments import (
+    AssignedDriver,
+    assigned_drivers,
+    digital_inputs,
+    digital_outputs,
+    written_drivers,
+)
 from engine.cell.drivers.driver_registry import installed_driver, installed_drivers
 from engine.cell.drivers.emulator_registry import Emulator, EmulatorOptions, Ready, emulator, installed_emulators
 
@@ -25,6 +31,7 @@ __all__ = [
     "RoundTrip",
     "assigned_drivers",
     "cell_schema_text",
+    "digital_inputs",
     "digital_outputs",
     "emulator",
     "installed_driver",

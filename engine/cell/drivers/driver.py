@@ -52,6 +52,7 @@ class Driver:
         enabling: What enabling the device does at it, and what a person has to do there, in plain sentences.
         digital_outputs: Returns how many outputs the controller has with these options; None where the model of the
             arm says it.
+        digital_inputs: The same of inputs.
         ports: The default TCP ports of the device, by what they are for.
         proven: What was tested against what, and that it never ran on hardware, if so.
         page: Path of its documentation.
@@ -71,6 +72,7 @@ class Driver:
     missing_skills: Mapping[str, str] = field(default_factory=dict[str, str])
     enabling: str = "Permits motion."
     digital_outputs: Callable[[Any], int] | None = None
+    digital_inputs: Callable[[Any], int] | None = None
     ports: Mapping[str, int]
     not_captured: str = ""
     capabilities_with: Callable[[Any], frozenset[Capability]] | None = None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from engine.cell.drivers.driver import Driver, DriverOptions
 from engine.cell.drivers.driver_registry import driver_options, installed_driver
@@ -85,13 +86,25 @@ def digital_outputs(cell: Cell, robot: str, *, of_model: int) -> int:
     Its driver says it, also while the robot is simulated instead; without a driver, or with one that leaves it to the
     model or cannot be loaded, it is `of_model`.
     """
+    return _count_of_driver(cell, robot, lambda driver: driver.digital_outputs, of_model)
+
+
+def digital_inputs(cell: Cell, robot: str, *, of_model: int) -> int:
+    """Return how many digital inputs the controller of a robot has, as `digital_outputs`."""
+    return _count_of_driver(cell, robot, lambda driver: driver.digital_inputs, of_model)
+
+
+def _count_of_driver(
+    cell: Cell, robot: str, count: Callable[[Driver], Callable[[Any], int] | None], of_model: int
+) -> int:
     kind = {**cell.document.real_devices, **cell.simulated}.get(robot, "")
     if not kind:
         return of_model
     try:
         driver = installed_driver(kind)
-        if driver.digital_outputs is None:
+        count_of = count(driver)
+        if count_of is None:
             return of_model
-        return driver.digital_outputs(driver_options(driver, cell.source, ("robots", robot, "driver")))
+        return count_of(driver_options(driver, cell.source, ("robots", robot, "driver")))
     except FlexcellError:
         return of_model  # the check of the cell reports why

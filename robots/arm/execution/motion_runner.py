@@ -186,7 +186,11 @@ class MotionRunner:
         return planned
 
     async def loaded(self) -> None:
-        """Return when inverse kinematics answers without a loading delay; the status shows the wait."""
+        """Return when inverse kinematics answers without a loading delay; the status shows the wait.
+
+        Raises:
+            RobotError: it is not loaded in time.
+        """
         if not self.loading.active:
             return
         _log.info("%s: %s", self.name, _LOADING)

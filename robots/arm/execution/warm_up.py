@@ -6,6 +6,10 @@ import asyncio
 import logging
 from collections.abc import Callable
 
+from engine.errors import RobotError
+
+LOADING_LIMIT_S = 300.0
+"""As long as a start of the planning process: the first one on a machine compiles all kernels."""
 _log = logging.getLogger("flexcell.arm")
 
 
@@ -32,9 +36,32 @@ class WarmUp:
             self._task = asyncio.create_task(self._run(), name=f"loading for {self._name}")
 
     async def finished(self) -> None:
-        """Return when loading has finished; cancelling a caller does not cancel the loading."""
-        if self._task is not None:
-            await asyncio.wait((self._task,))
+        """Return when loading has finished; cancelling a caller does not cancel the loading.
+
+        Raises:
+            RobotError: it takes longer than `LOADING_LIMIT_S` from now on; it goes on.
+        """
+        if self._task is None:
+            return
+        if not await self._ends():
+            raise RobotError(
+                f"inverse kinematics was not loaded within {LOADING_LIMIT_S:g} s",
+                where=self._name,
+                hint="try again when the computer has less to do: the first load on a machine compiles it",
+            )
+
+    async def close(self) -> None:
+        """Return when loading has finished; a thread that does not end in time is left behind."""
+        if self._task is None or await self._ends():
+            return
+        _log.error("%s: closed before inverse kinematics was loaded", self._name)
+        self._task.cancel()
+        await asyncio.wait((self._task,))
+
+    async def _ends(self) -> bool:
+        assert self._task is not None
+        done, _ = await asyncio.wait((self._task,), timeout=LOADING_LIMIT_S)
+        return bool(done)
 
     async def _run(self) -> None:
         try:

@@ -17,6 +17,7 @@ from robots.drivers.abb.abb_port import AbbPort
 from robots.drivers.abb.abb_report import Cause, abb_report, cause_of, fault_named, safety_text
 from robots.drivers.abb.gripper_switch import GripperSwitch
 from robots.drivers.abb.motion_link import Done, MotionLink
+from robots.drivers.abb.rws.rws_inputs import rws_inputs
 from robots.drivers.abb.rws.rws_monitor import RwsMonitor
 from robots.drivers.abb.simple_message import RobotStatus, TrajectoryPoint
 from robots.drivers.abb.state_collector import StateCollector
@@ -25,7 +26,7 @@ from robots.drivers.arm.arm_connection import ControllerFacts
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
 from robots.io.wire.wire_capture import NO_CAPTURE, WireCapture
 from robots.model.joint_map import JointMap
-from robots.port import MotionEnd, MotionReport, OutputPort
+from robots.port import InputPort, MotionEnd, MotionReport, OutputPort
 from robots.port.heartbeat import ENGINE_SILENCE_S
 
 _REPORT_LIMIT_S = 20.0
@@ -85,6 +86,7 @@ class AbbConnection:
         self._rws = rws
         if rws is not None:
             rws.when_changed(self._rws_changed)
+        self._inputs = rws_inputs(rws, lost_reason=lambda: self.lost_reason)
         self._port = AbbPort(
             name,
             joint_names=joint_names,
@@ -121,9 +123,9 @@ class AbbConnection:
         return self._switch
 
     @property
-    def inputs(self) -> None:
-        """None: signals of the controller are not read."""
-        return
+    def inputs(self) -> InputPort | None:
+        """The signals of `rws.inputs`; None without any."""
+        return self._inputs
 
     @property
     def problem(self) -> str:

@@ -21,6 +21,7 @@ ABB_IRC5 = Driver(
     capabilities=_CAPABILITIES,
     capabilities_with=_capabilities,
     digital_outputs=lambda options: 0 if options.gripper is None else 1,
+    digital_inputs=lambda options: 0 if options.rws is None else len(options.rws.inputs),
     enabling=(
         "Connects the motion port, and the gripper if there is one, and sends a stop request, which clears a path that "
         "the controller may still have. With Robot Web Services it then switches the motors on and starts the program "

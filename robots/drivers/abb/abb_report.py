@@ -31,6 +31,7 @@ def abb_report(
         state=_state_text(reading.status, rws),
         fault=f"{fault[0].value}: {fault[1]}" if fault is not None else "",
         firmware=rws.firmware if rws is not None else "",
+        inputs=rws.input_values if rws is not None else (),
         readings={**axes, "state_interval_s": median(each.took_s for each in collected), **speed},
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from engine.cell.drivers import AssignedDriver, Emulator, EmulatorOptions, Ready, assigned_drivers, emulator
 from engine.document import load_cell, with_simulated_devices
@@ -15,7 +16,7 @@ from robots.drivers.cell_emulation.switched_world_tool import SwitchedWorldTool
 from robots.drivers.cell_emulation.world_arm import WorldArm
 from robots.drivers.cell_emulation.world_judge import WorldJudge
 from robots.drivers.cell_emulation.world_time import WorldTime
-from robots.drivers.cell_emulation.world_tool import world_tool
+from robots.drivers.cell_emulation.world_tool import tool_holds, world_tool
 from robots.drivers.emulation.plant import Plant
 from robots.drivers.emulation.side_channel import SideChannel
 from robots.model.joint_map import JointMap
@@ -71,7 +72,12 @@ class EmulatedCell:
         self._joint_maps = joint_maps
         self._tools = {arm.name: arm.tool for arm in world.host.summary.arms}
         self._switched = tuple(
-            SwitchedWorldTool(options, owner=options.device or arm, tool=world_tool(world, arm, tool))
+            SwitchedWorldTool(
+                options,
+                owner=options.device or arm,
+                tool=world_tool(world, arm, tool),
+                holds=partial(tool_holds, world, arm, tool),
+            )
             for arm, options in switched.items()
             if (tool := self._tools[arm]) is not None
         )
@@ -107,7 +113,10 @@ class EmulatedCell:
             for each in wired:
                 each.take(output, on=on)
 
-        return Plant(arm=arm, on_output=on_output, clock=self._time)
+        def inputs() -> dict[int, bool]:
+            return {number: on for each in wired for number, on in each.sensed().items()}
+
+        return Plant(arm=arm, on_output=on_output, inputs=inputs, clock=self._time)
 
 
 async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:

@@ -6,9 +6,11 @@ import asyncio
 from typing import Protocol, cast
 
 from engine.errors import CellError
+from engine.messages.tool_hold import ToolHold
 from robots.control.commanding.motion_registry import CommandedMotion
 from robots.drivers.emulation.plant import ToolMeasurement, ToolPlant
 from robots.port import GripperPort, Motion
+from robots.sim.grip.tool_reading import state_publisher
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.sim.world.sim_world import SimWorld
 from robots.standard_tools.hand_port import SimHandPort
@@ -151,6 +153,13 @@ class WorldHand:
             blocked=not moving and abs(sample.closed_share - self._goal_share) > _THERE_SHARE,
             force_share=sample.force_n / self._port.max_force_n,
         )
+
+
+def tool_holds(world: SimWorld, arm: str, tool: ToolSummary) -> bool:
+    """Return whether the tool on an arm holds a part in the world, by its contacts there."""
+    summary, snapshot = world.host.summary, world.measured()
+    state = state_publisher(tool.kind).state(snapshot.tool(arm), tool, parts=summary.parts)
+    return isinstance(state, ToolHold) and state.held and state.part in summary.parts
 
 
 def world_tool(world: SimWorld, arm: str, tool: ToolSummary) -> ToolPlant:

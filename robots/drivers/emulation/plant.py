@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -107,16 +108,26 @@ def unconnected(output: int, *, on: bool) -> None:
     """Implement `OutputListener` where nothing is connected."""
 
 
+PlantInputs = Callable[[], Mapping[int, bool]]
+"""Returns the values of the digital inputs that something in the plant is connected to."""
+
+
+def nothing_sensed() -> Mapping[int, bool]:
+    """Implement `PlantInputs` where nothing is connected."""
+    return {}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Plant:
     """What a device consists of beside its controller; None for what it does not have, or what another one moves.
 
-    `on_output` hears of the digital outputs, by the numbers that the driver uses.
+    `on_output` hears of the digital outputs, and `inputs` tells the digital inputs, by the numbers of the driver.
     """
 
     arm: ArmPlant | None = None
     tool: ToolPlant | None = None
     on_output: OutputListener = unconnected
+    inputs: PlantInputs = nothing_sensed
     clock: PlantClock = field(default_factory=RealClock)
 
 

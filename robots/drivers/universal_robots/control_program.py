@@ -7,6 +7,8 @@ from pathlib import Path
 
 PROGRAM = Path(__file__).with_name("flexcell_control.script")
 STOP_RAD_S2 = 4.0
+STILL_RAD_S, STILL_DISTANCE_RAD = 0.001, 0.005
+"""An arm that is slower stands still, and follows no single set point that is farther off."""
 # Later than the program ends by itself, and later than it has stopped the arm.
 _STOPPED_S = 1.0
 INPUT_INTS = 7
@@ -67,6 +69,8 @@ def control_program(
         "lookahead_s": lookahead_s,
         "servo_gain": servo_gain,
         "stop_rad_s2": STOP_RAD_S2,
+        "still_rad_s": STILL_RAD_S,
+        "still_distance_rad": STILL_DISTANCE_RAD,
         "rtde_watchdog_hz": 1.0 / (silence_limit_s + _STOPPED_S),
     }
     for name, value in values.items():

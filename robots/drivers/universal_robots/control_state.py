@@ -8,7 +8,8 @@ from typing import cast
 from robots.drivers.universal_robots.control_program import STATE_OUTPUTS, ControlState
 from robots.drivers.universal_robots.rtde_codec import RtdeValue
 
-_PROGRAM_RUNS = 1 << 1
+PROGRAM_RUNS = 1 << 1
+"""Bit of `robot_status_bits`."""
 _PAUSED = 4
 # By the clock of the controller: a program that runs counts its cycles.
 _SILENT_S = 0.1
@@ -42,7 +43,7 @@ class ProgramWatch:
         """Take what was measured."""
         session, state, cycles, *numbers = (cast("int", values[name]) for name in STATE_OUTPUTS)
         self._time_s = cast("float", values["timestamp"])
-        self._is_playing = bool(cast("int", values["robot_status_bits"]) & _PROGRAM_RUNS)
+        self._is_playing = bool(cast("int", values["robot_status_bits"]) & PROGRAM_RUNS)
         self.is_paused = self._is_playing and values["runtime_state"] == _PAUSED
         # Registers keep what an earlier session has written.
         self._is_ours = session == self.session != 0
@@ -63,6 +64,11 @@ class ProgramWatch:
     def is_loaded(self) -> bool:
         """Whether it may be the program that the controller executes or has paused."""
         return self._is_ours and self._is_playing
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it has begun in this session, and is over."""
+        return self._is_ours and not (self._is_playing and self._state == ControlState.RUNNING)
 
     def end_words(self) -> str:
         """Return why it does not run any more."""

@@ -22,6 +22,7 @@ class UrFault(Enum):
     UNREACHABLE_CONTROLLER = "controller unreachable"
     PROGRAM_ENDED = "program ended"
     PROGRAM_PAUSED = "program paused"
+    PROGRAM_NOT_READY = "program not ready"
     WRONG_VERSION = "wrong version"
     REFUSED = "refused"
     LINK_CUT = "link cut"
@@ -43,6 +44,10 @@ _REMEDIES = {
     UrFault.UNREACHABLE_CONTROLLER: "check its address, cable and power",
     UrFault.PROGRAM_ENDED: "look at the log of the controller: a pose out of reach or the watchdog ends a program",
     UrFault.PROGRAM_PAUSED: "stop the program at the teach pendant, then enable the arm",
+    UrFault.PROGRAM_NOT_READY: (
+        "look at the log of the controller, and enable the arm again; "
+        "where controller or network are slow, give the program more time: `start_s`"
+    ),
     UrFault.WRONG_VERSION: "it needs PolyScope 3.5 or newer with the service RTDE",
     UrFault.LINK_SLOW: "check the network: the controller needs one of its own",
     UrFault.LINK_CUT: "check cable and controller; only reading is restored by itself",
@@ -82,6 +87,13 @@ def safety_fault(safety_bits: int, robot_mode: int) -> UrFault | None:
     return None if robot_mode == _RUNNING_MODE else UrFault.POWER_OFF
 
 
+def controller_words(robot_mode: int, safety_bits: int, *, is_running: bool, is_paused: bool) -> str:
+    """Return what a controller says of itself by RTDE: whether a program runs, and what permits or forbids motion."""
+    program = "is paused" if is_paused else "runs" if is_running else "does not run"
+    fault = safety_fault(safety_bits, robot_mode)
+    return f"the controller says that a program {program}, and {fault.value if fault else 'that the arm may move'}"
+
+
 def dashboard_fault(safety_status: str) -> UrFault | None:
     """Return what forbids motion, from the dashboard's answer to `safetystatus`; None where it says nothing of it."""
     return _SAFETY_WORDS.get(safety_status.rpartition(":")[2].strip())
@@ -94,7 +106,7 @@ def library_fault(message: str) -> UrFault:
         ("enable remote control", UrFault.LOCAL_CONTROL),
         ("verify the IP", UrFault.UNREACHABLE_CONTROLLER),
         ("No module named", UrFault.NO_CLIENT_LIBRARY),
-        ("Failed to start control script", UrFault.PROGRAM_ENDED),
+        ("Failed to start control script", UrFault.PROGRAM_NOT_READY),
     ):
         if words in message:
             return fault

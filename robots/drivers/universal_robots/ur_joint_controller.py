@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import importlib
 import time
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 import numpy as np
 
 from robots.drivers.arm.joint_controller import ControllerIdentity, ControllerReading, MotionRefused
+from robots.drivers.universal_robots.control_state import PROGRAM_RUNS
 from robots.drivers.universal_robots.script_port import ScriptPort
 from robots.drivers.universal_robots.ur_conversions import (
     OUTPUTS,
@@ -26,6 +28,7 @@ from robots.drivers.universal_robots.ur_conversions import (
 from robots.drivers.universal_robots.ur_dashboard import ask_dashboard
 from robots.drivers.universal_robots.ur_faults import (
     UrFault,
+    controller_words,
     dashboard_fault,
     library_fault,
     lost,
@@ -38,10 +41,10 @@ from robots.drivers.universal_robots.ur_options import DASHBOARD_S, UrOptions
 from robots.io.wire.wire_capture import NO_CAPTURE, WireCapture
 from robots.port import Array
 
-_PROGRAM_START_S = 5.0
 _SCRIPT_PORT_S = 0.5
+# The library waits for 3 s and more until its script takes a command, and gives up.
+_MOST_TRIES = 5
 _POLL_S = 0.0005
-_PROGRAM_RUNS = 1 << 1
 _PAUSED = 4
 _SERVO_STOP_RAD_S2 = 4.0
 _CB3_PERIOD_S, _E_SERIES_PERIOD_S = 0.008, 0.002
@@ -127,8 +130,10 @@ class UrJointController:
         """Start the control script where it does not run, then set tool, payload and watchdog.
 
         Raises:
-            MotionRefused: the safety system, another client or local control forbids it.
+            MotionRefused: the safety system, another client or local control forbids it, or the script does not take
+                them within `start_s`.
         """
+        end_s = time.monotonic() + self._options.start_s
         fault = safety_fault(self._receive.getSafetyStatusBits(), self._receive.getRobotMode())
         if fault is not None:
             raise refused(fault, "the controller cannot move")
@@ -136,13 +141,14 @@ class UrJointController:
         if self._receive.getRuntimeState() == _PAUSED:
             raise refused(UrFault.PROGRAM_PAUSED, "a program is paused at the controller")
         try:
-            self._start_script()
-            self._end_servoing()
-            _accept(self._control.setTcp(tool_centre(self._options, tcp_xyz_m)), "setTcp")
+            self._start_script(end_s)
+            self._end_servoing(end_s)
+            control, tcp = self._control, tool_centre(self._options, tcp_xyz_m)
+            self._have_taken("setTcp", lambda: control.setTcp(tcp), end_s)
             mass_kg, com_m = payload_with_load(self._options, load_kg, load_com_m)
-            _accept(self._control.setPayload(mass_kg, com_m), "setPayload")
+            self._have_taken("setPayload", lambda: control.setPayload(mass_kg, com_m), end_s)
             # The last: from here on there has to be a set point in each of its periods.
-            _accept(self._control.setWatchdog(self._options.watchdog_hz), "setWatchdog")
+            self._have_taken("setWatchdog", lambda: control.setWatchdog(self._options.watchdog_hz), end_s)
         except MotionRefused:
             raise
         # Whatever the library raises: it has no errors of its own.
@@ -195,7 +201,7 @@ class UrJointController:
         """Return why the arm does not move; also which stop has ended the program."""
         receive = self._receive
         fault = safety_fault(receive.getSafetyStatusBits(), receive.getRobotMode())
-        if not receive.getRobotStatus() & _PROGRAM_RUNS:
+        if not self._runs():
             self._runs_ours = False
             if fault is None and self._is_enabled:
                 fault = self._dashboard_fault() or UrFault.PROGRAM_ENDED
@@ -205,7 +211,7 @@ class UrJointController:
             self._is_enabled = False
         return fault
 
-    def _start_script(self) -> None:
+    def _start_script(self, end_s: float) -> None:
         if self._control is None:
             self._control = importlib.import_module("rtde_control").RTDEControlInterface(self._host)
         elif not self._control.isProgramRunning():
@@ -216,11 +222,39 @@ class UrJointController:
             self._is_servoing = False
             self._control.reuploadScript()
         self._runs_ours = True
-        limit_s = time.monotonic() + _PROGRAM_START_S
-        while not (self._control.isProgramRunning() and self._receive.getRobotStatus() & _PROGRAM_RUNS):
-            if time.monotonic() > limit_s:
-                raise refused(UrFault.PROGRAM_ENDED, "the control script does not start")
+        while not (self._control.isProgramRunning() and self._runs()):
+            if time.monotonic() > end_s:
+                raise refused(UrFault.PROGRAM_NOT_READY, f"the control script does not start; {self._words()}")
             time.sleep(self._period_s)
+
+    def _have_taken(self, what: str, command: Callable[[], object], end_s: float) -> None:
+        """Repeat a command until the script takes it, or has ended, or its time is over; raises MotionRefused."""
+        tries = 0
+        while tries < _MOST_TRIES and (tries == 0 or time.monotonic() < end_s):
+            tries += 1
+            if command() is True:
+                return
+            receive = self._receive
+            fault = safety_fault(receive.getSafetyStatusBits(), receive.getRobotMode())
+            if fault is None and not self._runs():
+                fault = self._dashboard_fault() or UrFault.PROGRAM_ENDED
+            if fault is not None:
+                raise refused(fault, f"{what} was refused; {self._words()}")
+            time.sleep(self._period_s)
+        times = "once" if tries == 1 else f"{tries} times"
+        raise refused(UrFault.PROGRAM_NOT_READY, f"{what} was refused {times}; {self._words()}")
+
+    def _runs(self) -> bool:
+        return bool(self._receive.getRobotStatus() & PROGRAM_RUNS)
+
+    def _words(self) -> str:
+        receive = self._receive
+        return controller_words(
+            receive.getRobotMode(),
+            receive.getSafetyStatusBits(),
+            is_running=self._runs(),
+            is_paused=receive.getRuntimeState() == _PAUSED,
+        )
 
     def _end_fault(self) -> UrFault:
         """Return how the program has ended: what the library knows may be newer than what was read last."""
@@ -229,18 +263,13 @@ class UrJointController:
             time.sleep(_POLL_S)
         return UrFault.PROGRAM_PAUSED if receive.getRuntimeState() == _PAUSED else UrFault.PROGRAM_ENDED
 
-    def _end_servoing(self) -> None:
+    def _end_servoing(self, end_s: float) -> None:
         if self._is_servoing:
             self._is_servoing = False
-            _accept(self._control.servoStop(_SERVO_STOP_RAD_S2), "servoStop")
+            self._have_taken("servoStop", lambda: self._control.servoStop(_SERVO_STOP_RAD_S2), end_s)
 
     def _dashboard_fault(self) -> UrFault | None:
         return dashboard_fault(self._ask("safetystatus"))
 
     def _ask(self, command: str, *, limit_s: float = DASHBOARD_S) -> str:
         return ask_dashboard(self._host, command, limit_s=limit_s, tap=self._dashboard_tap)
-
-
-def _accept(result: object, what: str) -> None:
-    if result is not True:
-        raise refused(UrFault.REFUSED, f"{what} was refused")

@@ -18,6 +18,8 @@ DASHBOARD_S, PROGRAM_END_S = 0.12, 0.3
 LONGEST_SILENCE_S = 0.6
 """A set point that is refused has the cause asked for, then the program asked to end, then the dashboard to stop."""
 
+LONGEST_START_S = 12.0
+"""A command of the library may take 4 s more until it gives up; whoever enables the arm waits for 20 s."""
 Port = Annotated[int, Meta(ge=1, le=65535)]
 
 
@@ -61,6 +63,14 @@ class UrOptions(DriverOptions, frozen=True, kw_only=True, tag="universal_robots"
     path_tolerance_rad: Annotated[
         float, Meta(gt=0.0, le=1.0, description="How far a joint may be behind its set point; it is by the lookahead")
     ] = 0.3
+    start_s: Annotated[
+        float,
+        Meta(
+            ge=1.0,
+            le=LONGEST_START_S,
+            description="Seconds that the control program may take until it runs and has taken tool and payload",
+        ),
+    ] = 10.0
     watchdog_hz: Annotated[
         float, Meta(ge=1.0, le=100.0, description="Without a set point for a period of it the controller stops the arm")
     ] = 10.0

@@ -25,7 +25,7 @@ from robots.drivers.universal_robots.control_program import (
     ControlRequest,
     control_program,
 )
-from robots.drivers.universal_robots.control_state import ProgramWatch
+from robots.drivers.universal_robots.control_state import PROGRAM_RUNS, ProgramWatch
 from robots.drivers.universal_robots.rtde_client import RtdeClient, RtdeInputsInUse, RtdeVersionError
 from robots.drivers.universal_robots.rtde_codec import RtdeValue
 from robots.drivers.universal_robots.script_port import ScriptPort
@@ -40,6 +40,7 @@ from robots.drivers.universal_robots.ur_conversions import (
 from robots.drivers.universal_robots.ur_dashboard import ask_dashboard
 from robots.drivers.universal_robots.ur_faults import (
     UrFault,
+    controller_words,
     dashboard_fault,
     lost,
     refused,
@@ -52,8 +53,6 @@ from robots.io.wire.wire_capture import NO_CAPTURE, WireCapture
 from robots.port import Array
 
 _CONNECT_S = 2.0
-_PROGRAM_START_S = 5.0
-_SETTINGS_S = 1.0
 _SCRIPT_PORT_S = 0.5
 _CB3_PERIOD_S, _E_SERIES_PERIOD_S = 0.008, 0.002
 _E_SERIES = 5
@@ -141,16 +140,18 @@ class UrScriptController:
         """Start the control program where it does not run, then set tool and payload, and read them back.
 
         Raises:
-            MotionRefused: the safety system, another client or local control forbids it.
+            MotionRefused: the safety system, another client or local control forbids it, or the program does not take
+                them within `start_s`.
             ControllerLost: it does not answer.
         """
+        end_s = time.monotonic() + self._options.start_s
         fault = self._safety_fault()
         if fault is not None:
             raise refused(fault, "the controller cannot move")
         if self._program.is_paused:
             raise refused(UrFault.PROGRAM_PAUSED, "a program is paused at the controller")
         if not self._program.runs:
-            self._start_program()
+            self._start_program(end_s)
         self._is_enabled = False
         tcp = tool_centre(self._options, tcp_xyz_m)
         mass_kg, com_m = payload_with_load(self._options, load_kg, load_com_m)
@@ -158,8 +159,8 @@ class UrScriptController:
         number = self._next("settings")
         self._await(
             lambda: self._program.settings == number and self._reads_back(tcp, mass_kg),
-            limit_s=_SETTINGS_S,
-            otherwise=lambda: refused(UrFault.REFUSED, f"tool and payload are not set: {self._read_back()}"),
+            end_s,
+            otherwise=lambda: f"tool and payload are not set: {self._read_back()}",
         )
         self._is_enabled = True
 
@@ -239,7 +240,7 @@ class UrScriptController:
     def _safety_fault(self) -> UrFault | None:
         return safety_fault(self._integer("safety_status_bits"), self._integer("robot_mode"))
 
-    def _start_program(self) -> None:
+    def _start_program(self, end_s: float) -> None:
         if self._is_e_series and self._ask("is in remote control", limit_s=_CONNECT_S) == "false":
             raise refused(UrFault.LOCAL_CONTROL, "the controller takes no programs")
         self._own_inputs()
@@ -261,8 +262,8 @@ class UrScriptController:
         )
         self._await(
             lambda: self._program.runs,
-            limit_s=_PROGRAM_START_S,
-            otherwise=lambda: refused(UrFault.PROGRAM_ENDED, "the control program does not start"),
+            end_s,
+            otherwise=lambda: "the control program does not start",
         )
 
     def _own_inputs(self) -> None:
@@ -281,9 +282,8 @@ class UrScriptController:
             raise lost(UrFault.LINK_CUT, str(error)) from error
         self._inputs = inputs
 
-    def _await(self, condition: Callable[[], bool], *, limit_s: float, otherwise: Callable[[], Exception]) -> None:
-        """Read, and tell the program that this process is alive, until the condition is met."""
-        end_s = time.monotonic() + limit_s
+    def _await(self, condition: Callable[[], bool], end_s: float, *, otherwise: Callable[[], str]) -> None:
+        """Read, and tell the program that this process is alive, until the condition is met; raises MotionRefused."""
         while not condition():
             if self._receive():
                 self._scripts.advance()
@@ -293,8 +293,10 @@ class UrScriptController:
                 raise refused(fault, "the controller has stopped")
             if self._scripts.problem:
                 raise refused(UrFault.REFUSED, self._scripts.problem)
+            if self._program.has_ended:
+                raise refused(UrFault.PROGRAM_ENDED, f"{otherwise()}; {self._program.end_words()}")
             if time.monotonic() > end_s:
-                raise otherwise()
+                raise refused(UrFault.PROGRAM_NOT_READY, f"{otherwise()}; {self._words()}")
 
     def _receive(self) -> bool:
         """Take the newest measurement; False without one within two periods."""
@@ -332,6 +334,14 @@ class UrScriptController:
     def _next(self, what: str) -> int:
         self._numbers[what] = number = (self._numbers[what] + 1) % _NUMBERS
         return number
+
+    def _words(self) -> str:
+        return controller_words(
+            self._integer("robot_mode"),
+            self._integer("safety_status_bits"),
+            is_running=bool(self._integer("robot_status_bits") & PROGRAM_RUNS),
+            is_paused=self._program.is_paused,
+        )
 
     def _reads_back(self, tcp: list[float], mass_kg: float) -> bool:
         """Whether a controller that reports tool and payload reports these."""

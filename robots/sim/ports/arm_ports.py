@@ -41,8 +41,13 @@ def output_ports(scene: SimScene) -> dict[str, SimOutputPort]:
 
 def input_ports(scene: SimScene) -> dict[str, SimInputPort]:
     """Return the inputs of each simulated arm that has some, by its name."""
-    counts = {each.name: each.robot().digital_inputs for each in scene.arms if not each.driven}
+    counts = {each.name: _inputs(each) for each in scene.arms if not each.driven}
     return {name: SimInputPort(name, count=count) for name, count in counts.items() if count}
+
+
+def _inputs(placement: ArmPlacement) -> int:
+    given = placement.digital_inputs
+    return placement.robot().digital_inputs if given is None else given
 
 
 def _outputs(placement: ArmPlacement) -> int:

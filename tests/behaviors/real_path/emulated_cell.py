@@ -61,8 +61,9 @@ def _ur10(text: str, host: str) -> str:
 
 def _irb4600(text: str, host: str) -> str:
     gripper = "{reply: any, reply_s: 5.0}"
-    arm = f"{{kind: abb_irc5, host: {host}, gripper: {gripper}, loads: defined_there, {_PATIENT_IRC5}}}"
-    magnet = f"driver: {{kind: switched_magnet, assume_held: true, {_PATIENT_SWITCH}}}"
+    rws = "{port: 8080, inputs: [diPlate], timeout_s: 5.0, stale_s: 20.0}"
+    arm = f"{{kind: abb_irc5, host: {host}, gripper: {gripper}, rws: {rws}, loads: defined_there, {_PATIENT_IRC5}}}"
+    magnet = f"driver: {{kind: switched_magnet, sensor: {{input: 0}}, {_PATIENT_SWITCH}}}"
     return text.replace("driver: sim", f"driver: {arm}").replace("{model: magnet}", f"{{model: magnet, {magnet}}}")
 
 

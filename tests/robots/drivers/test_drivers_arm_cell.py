@@ -116,7 +116,8 @@ root:
 
 
 def flexcell(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([FLEXCELL, *arguments], cwd=cwd, capture_output=True, text=True, check=False, timeout=300)
+    """Run a command; a planning process or a compiler that is not ready in 300 s says so before the limit here."""
+    return subprocess.run([FLEXCELL, *arguments], cwd=cwd, capture_output=True, text=True, check=False, timeout=380)
 
 
 def written(folder: Path, host: str, **options: object) -> Path:

@@ -12,11 +12,12 @@ from engine.cell.drivers import DeviceReport
 from engine.errors import RobotError
 from robots.drivers.abb.abb_faults import REMEDIES
 from robots.drivers.abb.gripper_switch import GripperSwitch
+from robots.drivers.abb.rws.rws_inputs import rws_inputs
 from robots.drivers.abb.rws.rws_monitor import RwsMonitor
 from robots.drivers.arm.arm_connection import ControllerFacts
 from robots.drivers.arm.controller_loop import NOT_ENABLED
 from robots.drivers.arm.process_arm_connection import ProcessArmConnection
-from robots.port import ArmPort, OutputPort
+from robots.port import ArmPort, InputPort, OutputPort
 
 _log = logging.getLogger("flexcell.devices")
 
@@ -43,6 +44,7 @@ class EgmArmConnection:
         process.when_changed(self._on_change)
         if rws is not None:
             rws.when_changed(self._on_change)
+        self._inputs = rws_inputs(rws, lost_reason=lambda: self.lost_reason)
 
     @property
     def port(self) -> ArmPort:
@@ -55,9 +57,9 @@ class EgmArmConnection:
         return self._switch
 
     @property
-    def inputs(self) -> None:
-        """None: signals of the controller are not read."""
-        return
+    def inputs(self) -> InputPort | None:
+        """The signals of `rws.inputs`; None without any."""
+        return self._inputs
 
     @property
     def problem(self) -> str:
@@ -132,7 +134,14 @@ class EgmArmConnection:
         state_text = f"{report.state}; {state.mode} mode, {state.panel}, RAPID {state.execution}"
         fault = f"{rws.fault[0].value}: {rws.fault[1]}" if rws.fault is not None else report.fault
         readings_now = {**report.readings, "speed_ratio": state.speed_share}
-        return replace(report, state=state_text, fault=fault, firmware=rws.firmware, readings=readings_now)
+        return replace(
+            report,
+            state=state_text,
+            fault=fault,
+            firmware=rws.firmware,
+            readings=readings_now,
+            inputs=rws.input_values,
+        )
 
     async def close(self) -> None:
         """Bring the arm to rest and disconnect."""

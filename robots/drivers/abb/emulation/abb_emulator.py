@@ -29,6 +29,7 @@ class AbbEmulatorOptions(EmulatorOptions, frozen=True, kw_only=True):
     rws_user: Annotated[str, Meta(description="User of Robot Web Services")] = "Default User"
     # The documented one of the user that every controller has.
     rws_password: Annotated[str, Meta(description="Its password")] = "robotics"  # noqa: S105
+    signals: Annotated[str, Meta(description="Names of its digital inputs, with commas; all are off at first")] = ""
     egm_client: Annotated[str, Meta(description="HOST:PORT to which EGM sends; empty for no EGM")] = ""
     comm_timeout_s: Annotated[float, Meta(gt=0.0, le=10.0, description="CommTimeout of the EGM program")] = (
         COMM_TIMEOUT_S
@@ -64,6 +65,7 @@ def emulator_options(driver: AbbOptions, _model: str) -> AbbEmulatorOptions:
         rws_port=rws.port if driver.rws is not None else 0,
         rws_user=rws.user,
         rws_password=rws.secret("rws"),
+        signals=",".join(rws.inputs),
         egm_client=f"{egm.address or _ANY_ADDRESS}:{egm.port}" if egm is not None else "",
         comm_timeout_s=max(COMM_TIMEOUT_S, egm.stale_s) if egm is not None else COMM_TIMEOUT_S,
         gripper_reply="" if strings is None or strings.reply == "none" else reply,

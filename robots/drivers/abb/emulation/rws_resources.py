@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from robots.drivers.abb.emulation.controller_panel import ControllerPanel, PanelRefusal
 from robots.drivers.abb.emulation.emulated_controller import EmulatedController
+from robots.drivers.abb.emulation.emulated_signals import PATH as SIGNALS
+from robots.drivers.abb.emulation.emulated_signals import EmulatedSignals
 
 Resource = dict[str, object]
 SERIAL, NAME, ROBOTWARE = "4600-501234", "IRC5_EMULATED", "6.15.0000"
@@ -22,11 +24,13 @@ class RwsResources:
     Args:
         controller: The one behind all ports.
         panel: Its panel.
+        signals: Its digital inputs.
     """
 
-    def __init__(self, controller: EmulatedController, panel: ControllerPanel) -> None:
+    def __init__(self, controller: EmulatedController, panel: ControllerPanel, signals: EmulatedSignals) -> None:
         self._controller = controller
         self._panel = panel
+        self._signals = signals
         self.symbols: dict[str, str] = {}
         """Values of RAPID data by `task/module/name`; what is written there acts at once."""
         self._readers: dict[str, Callable[[], Sequence[Resource]]] = {
@@ -45,6 +49,7 @@ class RwsResources:
                 self._task("ROS_MotionServer", motion=False),
             ],
             "/rw/elog/0": self._events,
+            SIGNALS: signals.resources,
             "/rw/motionsystem/mechunits/ROB_1/jointtarget": lambda: [self._joints()],
         }
 
@@ -54,6 +59,8 @@ class RwsResources:
         symbol = path.removeprefix("/rw/rapid/symbol/data/RAPID/")
         if symbol != path and symbol in self.symbols:
             return [{"_type": "rap-data", "value": self.symbols[symbol]}]
+        if signal := self._signals.of(path.removeprefix(f"{SIGNALS}/")):
+            return [signal.resource()]
         reader = self._readers.get(path.rstrip("/"))
         if reader is None:
             raise NoSuchResource(path)
@@ -73,6 +80,8 @@ class RwsResources:
                 panel.stop_program()
             case "/rw/rapid/execution", "resetpp":
                 panel.move_to_main()
+            case _, "set" if signal := self._signals.of(path.removeprefix(f"{SIGNALS}/")):
+                signal.on = values.get("lvalue", "0") == "1"
             case _, "set" if symbol in self.symbols:
                 self.symbols[symbol] = values.get("value", "")
             case _:

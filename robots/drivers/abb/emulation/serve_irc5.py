@@ -20,6 +20,7 @@ from robots.drivers.abb.emulation.controller_sessions import (
 )
 from robots.drivers.abb.emulation.egm_source import EgmFaults, EgmSource
 from robots.drivers.abb.emulation.emulated_controller import AXES, EmulatedController
+from robots.drivers.abb.emulation.emulated_signals import EmulatedSignals
 from robots.drivers.abb.emulation.rws_resources import RwsResources
 from robots.drivers.abb.emulation.rws_server import RwsServer
 from robots.drivers.abb.emulation.single_client_server import SingleClientServer
@@ -29,6 +30,7 @@ from robots.drivers.abb.simple_message import (
     START_DOWNLOAD,
     TrajectoryPoint,
 )
+from robots.drivers.emulation.input_wires import InputWires
 from robots.drivers.emulation.plant import ALONE, Plant
 from robots.drivers.emulation.side_channel import Request, SideChannel
 from robots.drivers.emulation.wire_faults import WireFaults
@@ -67,10 +69,10 @@ class ControllerFaults:
     cut, freeze, garbage, refuse: as `WireFaults`. slow: `seconds`. close_port: `port`, that is `motion`, `state`,
     `gripper` or `rws`. drop: the client of `port`. rws_fault: `fault`, one of these of RWS alone. egm_fault: `fault`,
     one of these, deaf or repeats, of EGM alone. restore: no fault of the wire. estop, guard, drives, program: `on`.
-    mode: `manual`, `manual_full` or `auto`. speed: `percent`. rws_refuse: RWS refuses all actions with `text`. error:
-    `code`. unknown: the status says nothing. restart: the controller restarts with drives off. go_on: an operator
-    clears everything and starts the program. foreign: another program moves to `joints_rad` in `seconds`.
-    gripper_reply: `text`. state: the true state.
+    signal: `name`, `on`, and `valid`, whether its device is there. mode: `manual`, `manual_full` or `auto`. speed:
+    `percent`. rws_refuse: RWS refuses all actions with `text`. error: `code`. unknown: the status says nothing.
+    restart: the controller restarts with drives off. go_on: an operator clears everything and starts the program.
+    foreign: another program moves to `joints_rad` in `seconds`. gripper_reply: `text`. state: the true state.
     """
 
     def __init__(
@@ -83,6 +85,7 @@ class ControllerFaults:
         panel: ControllerPanel,
         rws: RwsServer,
         egm: EgmSource,
+        signals: EmulatedSignals,
     ) -> None:
         self._controller = controller
         self._gripper = gripper
@@ -91,6 +94,7 @@ class ControllerFaults:
         self._panel = panel
         self._rws = rws
         self._egm = egm
+        self._signals = signals
 
     async def execute(self, request: Request) -> Mapping[str, object]:
         """Execute one request; raises KeyError, TypeError or ValueError for what is not one."""
@@ -172,6 +176,12 @@ class ControllerFaults:
                 controller.go_on()
             case "foreign":
                 self._move(np.array(cast("Any", request["joints_rad"]), dtype=float), _number(request["seconds"]))
+            case "signal":
+                signal = self._signals.of(str(request["name"]))
+                if signal is None:
+                    raise ValueError(f"there is no signal {request['name']}")
+                signal.on = bool(request.get("on", signal.on))
+                signal.valid = bool(request.get("valid", signal.valid))
             case "gripper_reply":
                 self._gripper.reply = str(request["text"])
             case _:
@@ -226,8 +236,9 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
 
     state = StateSession(controller, byte_order=options.byte_order)
     panel = ControllerPanel(controller)
+    signals = EmulatedSignals([name for name in options.signals.split(",") if name])
     rws = RwsServer(
-        RwsResources(controller, panel),
+        RwsResources(controller, panel, signals),
         faults,
         host=host,
         port=options.rws_port,
@@ -249,7 +260,9 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
         stop_s=options.stop_s,
         comm_timeout_s=options.comm_timeout_s,
     )
-    executed = ControllerFaults(controller, gripper, ports, faults, panel=panel, rws=rws, egm=egm).execute
+    executed = ControllerFaults(
+        controller, gripper, ports, faults, panel=panel, rws=rws, egm=egm, signals=signals
+    ).execute
     side = SideChannel(executed, host=host, port=options.side_port)
     try:
         for port in ports.values():
@@ -258,8 +271,10 @@ async def serve_irc5(options: AbbEmulatorOptions, ready: Ready, plant: Plant = A
         places = {f"{name}_port": port.port for name, port in ports.items()}
         ready({"host": host, **places, "side_port": await side.open()})
         # Axes of its own follow when somebody asks; those of a world need their set points.
+        wires = InputWires(plant.inputs, signals.set)
         while plant.arm is not None:
             controller.advance()
+            wires.follow()
             await clock.sleep_until(clock.now_s() + _CYCLE_S)
         await asyncio.Event().wait()
     finally:

@@ -46,11 +46,20 @@ class RwsClient:
         )
 
     def get(self, path: str, **parameters: str) -> bytes:
-        """Return the answer for a resource; raises AbbLinkError."""
+        """Return the answer for a resource that every controller has; raises AbbLinkError."""
         try:
-            return self._ask("GET", path, parameters)
+            return self.look_up(path, **parameters)
         except RwsRefused as error:
             raise AbbLinkError(AbbFault.REFUSED, f"RWS refuses {path}: {error}") from error
+
+    def look_up(self, path: str, **parameters: str) -> bytes:
+        """Return the answer for a resource.
+
+        Raises:
+            RwsRefused: the controller does not have it, or does not tell it; says why.
+            AbbLinkError: it does not answer.
+        """
+        return self._ask("GET", path, parameters)
 
     def post(self, path: str, action: str, values: Mapping[str, str]) -> None:
         """Ask for an action.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import Callable
 
 from engine.errors import RobotError
@@ -20,7 +21,7 @@ from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
 from robots.io.wire.wire_tap import NO_TAP, WireTap
 
 _PERIOD_S = 0.5
-"""Four requests each: the controller serves about twenty a second to all of its clients."""
+"""Four requests each, and one for each input: the controller serves about twenty a second to all of its clients."""
 _RECOVERY_S = 10.0
 _log = logging.getLogger("flexcell.devices")
 
@@ -47,6 +48,7 @@ class RwsMonitor:
             lambda: RwsClient(
                 where, options.port, user=options.user, password=password, timeout_s=options.timeout_s, tap=tap
             ),
+            signals=options.inputs,
         )
         self._changed: Callable[[], None] = lambda: None
         self._link: FreshLink[RwsState, RwsCommand] | None = None
@@ -95,6 +97,26 @@ class RwsMonitor:
             return ""
         its = self._state.identity
         return f"RobotWare {its.robotware}, system {its.system}, controller {its.name}, serial {its.serial}"
+
+    @property
+    def input_count(self) -> int:
+        """How many signals are inputs of the arm."""
+        return len(self._options.inputs)
+
+    @property
+    def input_values(self) -> tuple[bool, ...]:
+        """The signals that are the inputs of the arm; empty with an `inputs_problem`."""
+        return self._state.inputs if self._state is not None and not self.inputs_problem else ()
+
+    @property
+    def inputs_problem(self) -> str:
+        """Why the inputs are not known at present; empty if they are."""
+        if self._lost or self._state is None:
+            return f"RWS is lost: {self._lost}" if self._lost else "RWS was not read yet"
+        age_s = time.monotonic() - self._asked_s
+        if age_s > self._options.stale_s:
+            return f"RWS was not read for {age_s:.1f} s"
+        return self._state.inputs_problem
 
     def when_changed(self, callback: Callable[[], None]) -> None:
         """Call `callback`, on the event loop, for each reading, and when the service is lost."""

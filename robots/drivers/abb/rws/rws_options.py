@@ -10,6 +10,16 @@ from msgspec import Meta
 from engine.document import StrictModel
 from engine.errors import CellError
 
+SignalName = Annotated[
+    str,
+    Meta(
+        pattern=r"^\w+(/\w+/\w+)?$",
+        max_length=120,
+        description="Name of a digital signal at the controller, or network/device/name",
+    ),
+]
+MOST_INPUTS = 16
+"""Each is a request of its own, and the controller answers about twenty a second."""
 _DOCUMENTED_PASSWORD = "robotics"  # noqa: S105  ABB documents it for the user that every controller has
 
 
@@ -27,6 +37,17 @@ class RwsOptions(StrictModel, frozen=True, kw_only=True):
     stale_s: Annotated[
         float, Meta(ge=1.0, le=60.0, description="Seconds without an answer until the service counts as lost")
     ] = 3.0
+
+    inputs: Annotated[
+        tuple[SignalName, ...],
+        Meta(max_length=MOST_INPUTS, description="Signals that are the digital inputs 0, 1, … of the arm"),
+    ] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse a signal that is named twice."""
+        if len(set(self.inputs)) < len(self.inputs):
+            twice = next(name for name in self.inputs if self.inputs.count(name) > 1)
+            raise ValueError(f"`inputs` has {twice} twice")
 
     def secret(self, where: str) -> str:
         """Return the password.

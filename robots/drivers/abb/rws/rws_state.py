@@ -50,6 +50,8 @@ class RwsState:
         speed_share: The speed of the panel, 0 to 1.
         latest_error: Of the event log; None without an error.
         identity: Read once for each connection.
+        inputs: Values of the signals that are its digital inputs; empty with `inputs_problem`.
+        inputs_problem: Why a signal is not known; empty if all are.
     """
 
     panel: PanelState
@@ -58,6 +60,12 @@ class RwsState:
     speed_share: float
     latest_error: ControllerEvent | None
     identity: RwsIdentity
+    inputs: tuple[bool, ...] = ()
+    inputs_problem: str = ""
+
+
+class SignalUnknown(Exception):
+    """A signal has no value of an input; says why."""
 
 
 def resources(body: bytes) -> Sequence[Resource]:
@@ -108,6 +116,26 @@ def latest_error(body: bytes) -> ControllerEvent | None:
     events = (_event(resource) for resource in resources(body))
     errors = [event for event in events if event.kind == ERROR_EVENT]
     return max(errors, key=lambda event: event.number, default=None)
+
+
+def digital_signal(body: bytes) -> bool:
+    """Decode `/rw/iosystem/signals/…`: the logical value, which a person may have simulated at the controller.
+
+    Raises:
+        SignalUnknown: it is no digital signal, or its device is not there.
+        AbbLinkError: the answer is none.
+    """
+    signal = first(body)
+    kind = signal.get("type")
+    if kind not in ("DI", "DO"):
+        raise SignalUnknown(f"it is of the type {kind!r:.10}, not a digital one")
+    # A simulated one has a value although its device is not there.
+    if signal.get("lstate") != "simulated" and signal.get("phstate", "valid") != "valid":
+        raise SignalUnknown(f"its device {signal.get('unitnm', '')!r:.40} tells no valid value")
+    value = _integer(signal, "lvalue")
+    if value not in (0, 1):
+        raise garbage(f"{value} as the value of a digital signal")
+    return value == 1
 
 
 def rws_identity(*, identity: bytes, system: bytes) -> RwsIdentity:

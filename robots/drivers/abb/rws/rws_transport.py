@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum
 
 from robots.drivers.abb.abb_faults import REMEDIES, AbbFault, AbbLinkError
@@ -11,6 +11,8 @@ from robots.drivers.abb.rws.rws_state import (
     ControllerEvent,
     RwsIdentity,
     RwsState,
+    SignalUnknown,
+    digital_signal,
     latest_error,
     mode_selector,
     panel_state,
@@ -25,6 +27,7 @@ PANEL, MODE, EXECUTION, SPEED = (
     "/rw/rapid/execution",
     "/rw/panel/speedratio",
 )
+SIGNALS = "/rw/iosystem/signals"
 IDENTITY, SYSTEM, EVENT_LOG = "/ctrl/identity", "/rw/system", "/rw/elog/0"
 _START = {
     "regain": "continue",
@@ -51,10 +54,12 @@ class RwsTransport:
     Args:
         address: Host and port, for messages.
         new_client: Begins a session.
+        signals: Names of the signals that are the inputs of the arm.
     """
 
-    def __init__(self, address: str, new_client: Callable[[], RwsClient]) -> None:
+    def __init__(self, address: str, new_client: Callable[[], RwsClient], *, signals: Sequence[str] = ()) -> None:
         self._address = address
+        self._signals = tuple(signals)
         self._new_client = new_client
         self._client: RwsClient | None = None
         self._identity: RwsIdentity | None = None
@@ -106,6 +111,7 @@ class RwsTransport:
         if logged != self._logged:
             self._event = latest_error(client.get(EVENT_LOG, lang="en"))
             self._logged = logged
+        inputs, inputs_problem = self._inputs(client)
         return RwsState(
             panel=panel,
             mode=mode,
@@ -113,7 +119,19 @@ class RwsTransport:
             speed_share=speed_share(client.get(SPEED)),
             latest_error=self._event,
             identity=self._identity,
+            inputs=inputs,
+            inputs_problem=inputs_problem,
         )
+
+    def _inputs(self, client: RwsClient) -> tuple[tuple[bool, ...], str]:
+        """Return the values of all signals, or why one is not known; a signal that is missing loses no connection."""
+        values: list[bool] = []
+        for name in self._signals:
+            try:
+                values.append(digital_signal(client.look_up(f"{SIGNALS}/{name}")))
+            except (RwsRefused, SignalUnknown) as error:
+                return (), f"the signal {name} of the controller is not known: {error}"
+        return tuple(values), ""
 
     def write(self, command: RwsCommand) -> None:
         """Do what a person has asked for; a refusal is kept in `refusals`."""

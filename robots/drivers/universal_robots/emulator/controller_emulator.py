@@ -8,6 +8,7 @@ from collections.abc import AsyncGenerator
 from contextlib import ExitStack, asynccontextmanager
 from dataclasses import dataclass
 
+from robots.drivers.emulation.input_wires import InputWires
 from robots.drivers.emulation.plant import ALONE, Plant
 from robots.drivers.universal_robots.emulator.controller_side_channel import ControllerSideChannel
 from robots.drivers.universal_robots.emulator.controller_state import ControllerState
@@ -42,6 +43,7 @@ class ControllerEmulator:
         self._series = SERIES[series]
         arm = EmulatedArm(ARMS[model], cycle_s=1.0 / self._series.cycle_hz, plant=plant.arm)
         self.controller = ControllerState(arm, tool_kg=tool_kg, on_output=plant.on_output)
+        self._wires = InputWires(plant.inputs, self.controller.set_digital_input)
         self._clock = plant.clock
         self._faults = LinkFaults()
         self._rtde = RtdeServer(self.controller, self._series, self._faults)
@@ -79,6 +81,7 @@ class ControllerEmulator:
             if self._faults.is_frozen:
                 continue
             cycle += 1
+            self._wires.follow()
             self.controller.run_cycle()
             self._rtde.send_data(cycle)
             self._side_channel.after_cycle()

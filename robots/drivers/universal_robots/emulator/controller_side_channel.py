@@ -23,7 +23,8 @@ class EmulatorRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     do: Literal[
         "state", "wait", "protective_stop", "emergency_stop", "release_emergency_stop", "digital_input", "contact",
-        "force", "remote", "freeze", "drop", "cut", "slow", "garbage", "restore",
+        "force", "remote", "freeze", "drop", "cut", "slow", "slow_start", "garbage",
+        "restore",
     ]  # fmt: skip
     until: Literal["", "moving", "at_rest", "playing", "stopped", "unlockable"] = ""
     bit: int = 0
@@ -112,9 +113,12 @@ class ControllerSideChannel:
                 self._faults.cut(stay=request.do == "cut")
             case "slow":
                 self._faults.delay_s = max(0.0, request.value)
+            case "slow_start":
+                controller.start_delay_s = max(0.0, request.value)
             case "garbage":
                 self._faults.garbles = True
             case _:
+                controller.start_delay_s = 0.0
                 self._faults.restore()
 
     def state(self) -> Mapping[str, object]:

@@ -19,7 +19,7 @@ from robots.drivers.universal_robots.emulator.emulated_arm import (
 
 REGISTERS = 48
 _INT32 = 1 << 31
-# Standard outputs, then those of the tool: numbered as drivers do.
+# Standard outputs or inputs, then those of the tool: numbered as drivers do.
 _WIRED_BITS = (*range(8), 16, 17)
 _MOST_SECONDARY = 10
 
@@ -87,6 +87,9 @@ class ControllerState:
         self.payload_inertia_kgm2 = (0.0,) * 6
         self.tcp_force_n = (0.0,) * 6
         self.contact_steps = 0
+        self.start_delay_s = 0.0
+        """How long a program is loaded, and counts as running, before its first statement is executed."""
+        self._executes_from_s = 0.0
         self.messages: deque[str] = deque(maxlen=50)
         self._watchdog: RtdeWatchdog | None = None
         self._written_s: dict[str, float] = {}
@@ -126,6 +129,12 @@ class ControllerState:
             if changed >> bit & 1:
                 self._on_output(output, on=bool(self.digital_outputs >> bit & 1))
 
+    def set_digital_input(self, number: int, *, on: bool) -> None:
+        """Turn an input on or off: 0 to 7 standard, then those of the tool; nothing for others."""
+        if number < len(_WIRED_BITS):
+            bit = 1 << _WIRED_BITS[number]
+            self.digital_inputs = self.digital_inputs & ~bit | (bit if on else 0)
+
     def set_speed_fraction(self, fraction: float) -> None:
         """Move the speed slider."""
         self.speed_fraction = min(1.0, max(0.0, fraction))
@@ -150,6 +159,7 @@ class ControllerState:
         self.stop_program()
         self.arm.settle()
         self.program, self.program_name = program, program.name
+        self._executes_from_s = self.time_s + self.start_delay_s
         return True
 
     def start_secondary(self, program: UrProgram) -> None:
@@ -182,13 +192,17 @@ class ControllerState:
         self.time_s += self.arm.cycle_s
         self._check_watchdog()
         program = self.program
-        if program is not None and not self.is_paused and not self._step(program) and self.program is program:
+        if program is not None and self._executes and not self._step(program) and self.program is program:
             self.stop_program()
         self._secondary = [secondary for secondary in self._secondary if self._step(secondary)]
         self.arm.plant.carry(max(0.0, self.payload_kg - self._tool_kg))
         self.arm.finish_cycle(PROGRAM_STOP_RAD_S2 if self.safety.can_move else SAFETY_STOP_RAD_S2)
         if self.arm.plant.problem and self.safety.can_move:
             self.protective_stop(self.arm.plant.problem)
+
+    @property
+    def _executes(self) -> bool:
+        return not self.is_paused and self.time_s >= self._executes_from_s
 
     def _step(self, program: UrProgram) -> bool:
         """Execute a cycle of a program; returns whether it goes on."""

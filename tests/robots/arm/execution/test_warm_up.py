@@ -93,6 +93,21 @@ async def test_a_cell_that_closes_meanwhile_leaves_nothing_behind(monkeypatch: p
     assert gate.opened.is_set()
 
 
+async def test_a_load_that_does_not_end_fails_the_goal_by_name_and_lets_the_cell_close(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    gate = Gate(monkeypatch)
+    monkeypatch.setattr("robots.arm.execution.warm_up.LOADING_LIMIT_S", 0.2)
+    async with served() as cell:
+        end = await cell.bus.send_goal(THERE, to="left").result()
+        assert end.status is not GoalStatus.SUCCEEDED
+        assert end.cause is not None
+        assert any("was not loaded within 0.2 s" in link.message for link in end.cause.chain())
+        assert await cell.status_of_next() is GoalStatus.SUCCEEDED
+    assert not gate.opened.is_set()
+    gate.opened.set()
+
+
 async def test_what_cannot_be_loaded_is_reported_by_the_goal_that_needs_it(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

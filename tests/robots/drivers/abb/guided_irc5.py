@@ -37,6 +37,7 @@ def guided_connection(
     stale_s: float = 5.0,
     process_silence_s: float = 10.0,
     rws: bool = False,
+    inputs: tuple[str, ...] = (),
     gripper: GripperStrings | None = None,
 ) -> EgmArmConnection:
     """Return the connection, not yet open; a loaded machine gets more time than an arm by default."""
@@ -47,7 +48,8 @@ def guided_connection(
         "start_s": 20.0,
         "process_silence_s": process_silence_s,
     }
-    web = {"rws": {"port": emulator.place["rws_port"], "timeout_s": 5.0, "stale_s": 10.0}} if rws else {}
+    service = {"port": emulator.place["rws_port"], "timeout_s": 5.0, "stale_s": 10.0, "inputs": inputs}
+    web = {"rws": service} if rws else {}
     options = replace(emulator.driver_options(egm=egm, **web), gripper=gripper)
     assert options.egm is not None
     return new_egm_arm(
@@ -68,13 +70,14 @@ async def guided(
     rws: bool = False,
     stale_s: float = 5.0,
     process_silence_s: float = 10.0,
+    inputs: tuple[str, ...] = (),
     gripper: GripperStrings | None = None,
 ) -> AsyncGenerator[EgmArmConnection]:
     """Return an open connection; it is closed afterwards."""
     await asyncio.to_thread(emulator.do, "restore")
     await asyncio.to_thread(emulator.do, "go_on")
     connection = guided_connection(
-        emulator, rws=rws, stale_s=stale_s, process_silence_s=process_silence_s, gripper=gripper
+        emulator, rws=rws, inputs=inputs, stale_s=stale_s, process_silence_s=process_silence_s, gripper=gripper
     )
     await connection.open()
     try:

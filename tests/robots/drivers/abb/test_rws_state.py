@@ -18,6 +18,8 @@ from robots.drivers.abb.rws.rws_state import (
     RapidExecution,
     RwsIdentity,
     RwsState,
+    SignalUnknown,
+    digital_signal,
     error_text,
     latest_error,
     mode_selector,
@@ -30,14 +32,30 @@ from tests.tiers import examples
 
 MANY = settings(max_examples=examples(200, nightly=2_000), deadline=None)
 IDENTITY = RwsIdentity(name="cell", serial="1", robotware="6.15", system="s")
-DECODERS = (panel_state, mode_selector, rapid_execution, speed_share, latest_error)
+DECODERS = (panel_state, mode_selector, rapid_execution, speed_share, latest_error, digital_signal)
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=20),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
     max_leaves=10,
 )
 RESOURCE = st.dictionaries(
-    st.sampled_from(["ctrlstate", "opmode", "ctrlexecstate", "speedratio", "_title", "msgtype", "code", "title"]), JSON
+    st.sampled_from(
+        [
+            "ctrlstate",
+            "opmode",
+            "ctrlexecstate",
+            "speedratio",
+            "_title",
+            "msgtype",
+            "code",
+            "title",
+            "type",
+            "lvalue",
+            "phstate",
+            "lstate",
+        ]
+    ),
+    JSON | st.sampled_from(["DI", "1"]),
 )
 
 
@@ -102,6 +120,32 @@ def test_each_value_is_read() -> None:
     assert error_text(b"<html>") == ""
 
 
+SIGNAL = {"type": "DI", "lvalue": "1", "lstate": "not simulated", "phstate": "valid", "unitnm": "PANEL"}
+
+
+def test_a_digital_signal_has_its_logical_value_also_where_a_person_simulates_it() -> None:
+    assert digital_signal(answer(SIGNAL)) is True
+    assert digital_signal(answer({**SIGNAL, "lvalue": "0", "type": "DO"})) is False
+    assert digital_signal(answer({**SIGNAL, "phstate": "invalid", "lstate": "simulated"})) is True
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"phstate": "invalid"}, "its device 'PANEL' tells no valid value"),
+        ({"type": "AI"}, "it is of the type 'AI', not a digital one"),
+    ],
+)
+def test_a_signal_without_a_valid_digital_value_is_unknown(given: dict[str, str], reason: str) -> None:
+    with pytest.raises(SignalUnknown, match=reason):
+        digital_signal(answer(SIGNAL | given))
+
+
+def test_a_value_that_no_digital_signal_has_is_garbage() -> None:
+    with pytest.raises(AbbLinkError, match="2 as the value of a digital signal"):
+        digital_signal(answer({**SIGNAL, "lvalue": "2"}))
+
+
 @pytest.mark.parametrize("order", [1, -1])
 def test_the_latest_error_is_found_in_either_order_of_the_log(order: int) -> None:
     log = [
@@ -117,6 +161,6 @@ def test_the_latest_error_is_found_in_either_order_of_the_log(order: int) -> Non
 @given(st.binary(max_size=200) | JSON.map(msgspec.json.encode) | st.lists(RESOURCE).map(lambda all_: answer(*all_)))
 def test_any_answer_is_read_or_refused(body: bytes) -> None:
     for decode in DECODERS:
-        with suppress(AbbLinkError):
+        with suppress(AbbLinkError, SignalUnknown):
             decode(body)
     error_text(body)

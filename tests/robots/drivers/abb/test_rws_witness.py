@@ -37,6 +37,10 @@ try:
 except Exception as error:
     seen.append(type(error).__name__)
 seen.append([entry.code for entry in rws.read_event_log()][:1])
+signal = dict(signal="diDoor", network="Local", unit="PANEL")
+seen.append(rws.get_digital_io(**signal))
+rws.set_digital_io(value=1, **signal)
+seen.append(rws.get_digital_io(**signal))
 print(json.dumps(seen))
 """
 EGM = """
@@ -79,7 +83,7 @@ def witnessed(script: str) -> Any:
 
 @pytest.mark.nightly
 def test_a_foreign_client_reads_stops_and_starts_the_controller() -> None:
-    with emulated() as emulator:
+    with emulated(signals="Local/PANEL/diDoor") as emulator:
         seen = witnessed(RWS.format(host=emulator.place["host"], port=emulator.place["rws_port"]))
         assert seen == [
             "motoron",
@@ -92,6 +96,8 @@ def test_a_foreign_client_reads_stops_and_starts_the_controller() -> None:
             ["motoron", "running"],
             "ABBException",
             [10011],
+            0,
+            1,
         ]
         assert_stopped_and_started(emulator)
 

@@ -52,3 +52,26 @@ def test_a_tool_follows_its_outputs(
     for output, on in outputs:
         wired.take(output, on=on)
     assert tool.shares == shares
+
+
+@pytest.mark.parametrize(
+    ("sensor", "free", "holding"),
+    [
+        (None, "", ""),
+        ({"topic": "line/part"}, "", ""),
+        ({"input": 3}, "3 off", "3 on"),
+        ({"input": 3, "inverted": True}, "3 on", "3 off"),
+    ],
+)
+def test_the_input_of_its_sensor_follows_what_it_holds(sensor: dict[str, Any] | None, free: str, holding: str) -> None:
+    held: list[bool] = []
+    options = msgspec.convert({"kind": "switched_gripper", "sensor": sensor}, SwitchedGripperOptions)
+    wired = SwitchedWorldTool(options, owner="arm", tool=NotedTool(), holds=lambda: bool(held))
+    before = sensed(wired)
+    held.append(True)
+    assert (before, sensed(wired)) == (free, holding)
+
+
+def sensed(wired: SwitchedWorldTool) -> str:
+    """Return the input of its sensor in words."""
+    return " ".join(f"{number} {'on' if on else 'off'}" for number, on in wired.sensed().items())

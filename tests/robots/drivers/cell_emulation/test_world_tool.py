@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from engine.messages import Pose, Quaternion
-from robots.drivers.cell_emulation.world_tool import world_tool
+from robots.drivers.cell_emulation.world_tool import tool_holds, world_tool
 from robots.drivers.softhand.emulation.emulated_hand import CLOSED_TICKS, EmulatedHand
 from robots.port import MotionEnd
 from robots.scene.sim_scene import PartBody, SimScene
+from robots.sim.grip.tool_summary import ToolSummary
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene
 
 # Fingers forward, palm to the left, thumb up; and a configuration in which the arm stands like that.
@@ -34,10 +35,21 @@ def cell(*parts: PartBody) -> SimScene:
     return scene("panda", "softhand", parts=parts, fixtures=(block("pedestal", (0.5, 0.0, TOP_M), (0.1, 0.1)),))
 
 
-def hand_of(reach: Reach) -> EmulatedHand:
-    """Return an emulated hand whose tendon is that of the world."""
+def summary_of(reach: Reach) -> ToolSummary:
+    """Return what the tool is."""
     tool = next(arm.tool for arm in reach.world.host.summary.arms if arm.name == ARM)
     assert tool is not None
+    return tool
+
+
+def holds(reach: Reach) -> bool:
+    """Return what a sensor at the tool detects."""
+    return tool_holds(reach.world, ARM, summary_of(reach))
+
+
+def hand_of(reach: Reach) -> EmulatedHand:
+    """Return an emulated hand whose tendon is that of the world."""
+    tool = summary_of(reach)
     return EmulatedHand(asyncio.get_running_loop().time, world_tool(reach.world, ARM, tool), active=True)
 
 
@@ -69,13 +81,16 @@ async def test_a_can_is_held_by_contact_and_falls_when_the_hand_opens() -> None:
         hand = hand_of(reach)
         assert (await reach.to((x, y - 0.1, z), SIDE, duration_s=1.5, like=BESIDE)).end is MotionEnd.REACHED
         assert (await reach.to(GRIP_XYZ, SIDE)).end is MotionEnd.REACHED
+        assert not holds(reach)
         await lead(hand, 0.7)
+        assert holds(reach)
         assert extra_ma(hand) > PRESSES_MA
         assert hand.position_ticks == pytest.approx(0.7 * CLOSED_TICKS, abs=10)
         await reach.to((x, y, z + 0.1), SIDE)
         await reach.to((x, y - 0.2, z + 0.1), SIDE)
         assert reach.part("can")[0][2] > TOP_M + 0.14
         await lead(hand, 0.0)
+        assert not holds(reach)
         await asyncio.sleep(1.0)
         assert reach.part("can")[0][2] < TOP_M - 0.1
         assert (hand.position_ticks, abs(extra_ma(hand)) < NOISE_MA) == (0, True)

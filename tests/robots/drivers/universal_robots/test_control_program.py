@@ -120,6 +120,41 @@ def test_a_paused_program_whose_driver_is_gone_moves_nothing_when_a_person_resum
     assert run.controller.arm.q.tolist() == pytest.approx(rest, abs=1e-4)
 
 
+@pytest.mark.parametrize("ahead_rad", [0.0, 0.3], ids=["all set points executed", "one came while it was paused"])
+@pytest.mark.parametrize("paused_cycles", [1, 20, 100])
+def test_a_paused_program_that_a_person_resumes_at_once_goes_nowhere_without_its_driver(
+    ahead_rad: float, paused_cycles: int
+) -> None:
+    """Within the second until the controller ends it; the registers still have the last set point."""
+    run = Session()
+    run.follow(0.008, 100)
+    run.controller.is_paused = True
+    if ahead_rad:
+        q = [float(run.controller.arm.q[0]) + ahead_rad, *run.start[1:]]
+        run.write(ControlRequest.FOLLOW, q, output=(1, 3, 1))
+    while not run.controller.arm.is_at_rest:
+        run.cycles(1)
+    run.cycles(paused_cycles)
+    rest = run.controller.arm.q.tolist()
+    assert run.is_playing
+    run.controller.is_paused = False
+    for _ in range(40):
+        run.cycles(1)
+        assert run.controller.arm.q.tolist() == pytest.approx(rest, abs=0.005)
+    assert (run.state, run.is_playing) == (ControlState.NO_SET_POINT, False)
+    assert run.controller.digital_outputs == 0
+
+
+def test_an_arm_at_rest_follows_set_points_that_begin_far_off_it_once_two_have_come() -> None:
+    """Where a motion begins fast, or an arm turns round."""
+    run = Session()
+    run.follow(0.02, 1)
+    run.cycles(3)
+    assert run.controller.arm.q.tolist() == run.start
+    run.follow(0.02, 2)
+    assert run.controller.arm.q[0] > run.start[0]
+
+
 def test_set_points_of_another_session_count_as_silence() -> None:
     run = Session()
     run.follow(0.005, 20)
@@ -185,13 +220,15 @@ def test_tool_and_payload_are_set_at_rest() -> None:
 def test_outputs_are_set_once_each() -> None:
     run = Session()
     run.follow(0.0, 1, output=(1, 3, 1))
-    run.follow(0.0, 1, output=(2, 9, 1))
+    assert run.controller.digital_outputs == 0
+    run.follow(0.0, 1, output=(1, 3, 1))
+    run.follow(0.0, 2, output=(2, 9, 1))
     assert run.controller.digital_outputs == 1 << 3 | 1 << 17
     # Somebody else turns it off; the old request is not repeated.
     run.controller.set_digital_outputs(1 << 3, 0)
     run.follow(0.0, 3, output=(2, 9, 1))
     assert run.controller.digital_outputs == 1 << 17
-    run.follow(0.0, 1, output=(3, 9, 0))
+    run.follow(0.0, 2, output=(3, 9, 0))
     assert (run.controller.digital_outputs, run.controller.output_ints[5]) == (0, 3)
 
 

@@ -89,3 +89,34 @@ async def test_a_stop_of_the_controller_that_comes_with_the_answer_is_not_forgot
             assert asked
             await connection.report(readings=10)
             assert "protective stop" in connection.problem
+
+
+async def test_a_control_script_that_starts_late_is_waited_for_and_has_its_tool_set(client: str) -> None:
+    """The library gives up after 4 s."""
+    with EmulatedController() as controller:
+        tcp = (0.0, 0.0, 0.15, 0.0, 0.0, 0.0)
+        async with connected(controller, client=client, tcp=tcp, payload_kg=1.5) as connection:
+            controller.ask("slow_start", value=5.5)
+            await connection.enable()
+            assert not connection.problem
+            state = controller.state()
+            assert (state["payload_kg"], state["tcp_offset"]) == (1.5, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0])
+
+
+async def test_a_control_script_that_does_not_start_in_its_time_is_named_with_what_the_controller_says(
+    client: str,
+) -> None:
+    with EmulatedController() as controller:
+        async with connected(controller, client=client, start_s=1.0) as connection:
+            controller.ask("slow_start", value=1000.0)
+            with pytest.raises(RobotError, match="program not ready: ") as refused:
+                await connection.enable()
+            assert refused.value.message.endswith("the controller says that a program runs, and that the arm may move")
+            assert refused.value.where == controller.host
+            assert "`start_s`" in (refused.value.hint or "")
+            controller.ask("slow_start", value=0.0)
+            await asyncio.to_thread(press, controller.host, "stop")
+            controller.wait("stopped")
+            await connection.report(readings=5)
+            await connection.enable()
+            assert not connection.problem

@@ -7,6 +7,7 @@ import pytest
 
 from robots.drivers.abb.emulation.controller_panel import ControllerPanel
 from robots.drivers.abb.emulation.emulated_controller import EmulatedController
+from robots.drivers.abb.emulation.emulated_signals import EmulatedSignals
 from robots.drivers.abb.emulation.rws_resources import RwsResources
 from robots.drivers.abb.emulation.rws_server import RwsServer
 from robots.drivers.emulation.wire_faults import WireFaults
@@ -16,7 +17,7 @@ from robots.drivers.emulation.wire_faults import WireFaults
 def server() -> RwsServer:
     """A server that does not listen."""
     controller = EmulatedController(lambda: 0.0, axes=np.zeros(6), stop_s=0.2)
-    resources = RwsResources(controller, ControllerPanel(controller))
+    resources = RwsResources(controller, ControllerPanel(controller), EmulatedSignals(["diDoor"]))
     return RwsServer(resources, WireFaults(), host="127.0.0.1", port=0, user="user", password="secret")
 
 
