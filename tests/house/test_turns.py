@@ -31,7 +31,7 @@ def test_a_costly_test_is_in_one_turn_with_all_its_values() -> None:
     "file",
     [
         FAST.relative_to(ROOT).as_posix(),
-        "tests/house/test_examples_run.py",
+        "tests/house/test_audit.py",
         "tests/robots/test_simulated_cell_stop.py",
         "tests/engine/stop/test_relay.py",
         "tests/engine/project/test_session_stops.py",
