@@ -19,7 +19,7 @@ from hypothesis import settings
 
 from engine.clock import run_virtual
 from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
-from tests.turns import Turn
+from tests.turns import Turn, defined_tests, takes_turns
 
 # Events of the interpreter when a process is started.
 PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
@@ -57,14 +57,18 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave out files with a marker in a fast run, unread: what they import takes longest."""
-    is_test = collection_path.suffix == ".py" and collection_path.name.startswith("test_")
-    return True if is_test and _is_fast(config) and kinds_of(collection_path) else None
+    """Leave out files with a marker in a fast run, or without a test in a turn, unread: what they import takes long."""
+    if collection_path.suffix != ".py" or not collection_path.name.startswith("test_"):
+        return None
+    turn: Turn | None = config.getoption("--turn")
+    is_for_others = turn is not None and not turn.has_any_of(collection_path)
+    return True if is_for_others or (_is_fast(config) and kinds_of(collection_path)) else None
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark tests by what they need, and leave out those for the night."""
+    """Mark tests by what they need, and leave out those for the night; each must be one that turns know of."""
+    require_known_to_turns(items)
     for item in items:
         for kind in sorted(kinds_of(item.path)) or ("fast",):
             item.add_marker(getattr(pytest.mark, kind))
@@ -89,6 +93,16 @@ def pytest_collection_finish() -> None:
     """Have the garbage collector pass by what was imported, which stays; a tenth of the time goes into that."""
     gc.collect()
     gc.freeze()
+
+
+def require_known_to_turns(items: list[pytest.Item]) -> None:
+    """Refuse a costly test that `tests/turns.py` does not see in the text of its file: no turn would have it."""
+    files = {item.path for item in items if item.path.suffix == ".py" and takes_turns(item.path)}
+    known = {file: defined_tests(file) for file in files}
+    for item in items:
+        if item.path in known and item.nodeid.partition("[")[0] not in known[item.path]:
+            problem = f"{item.nodeid} is not defined in its file, so that no turn would have it"
+            raise pytest.UsageError(f"{problem}: define it there (tests/turns.py)")
 
 
 def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:
