@@ -18,6 +18,7 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
+from tests.cpu_times import CpuTimes
 from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
 from tests.turns import Turn, defined_tests, takes_turns
 
@@ -30,6 +31,7 @@ GLFW_VERSION = "def get_version(library_handle)"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add what chooses how much is run."""
+    parser.addoption("--cpu", action="store_true", help="print where the processor time went, by stage and room")
     parser.addoption("--nightly", action="store_true", help="more of the same: values marked `nightly`, examples")
     parser.addoption(
         "--turn", type=_turn, metavar="K/N", help="of what needs a browser, process or physics, the Kth of N shares"
@@ -48,6 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
         "nightly: more of what other values show already; run with --nightly",
     ):
         config.addinivalue_line("markers", line)
+    if config.getoption("--cpu"):
+        config.pluginmanager.register(CpuTimes())
     ThisRun.nightly = bool(config.getoption("--nightly"))
     # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
     settings.register_profile("flexcell", deadline=None, max_examples=examples(50, nightly=300))
