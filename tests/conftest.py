@@ -83,6 +83,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if item not in left_out]
 
 
+@pytest.hookimpl(wrapper=True, tryfirst=True, specname="pytest_collection_modifyitems")
+def pytest_house_first(items: list[pytest.Item]) -> Generator[None, object, object]:
+    """Have one process test the house, whatever order was drawn: it reads every source, once for all of its tests."""
+    result = yield
+    items.sort(key=lambda item: not item.nodeid.startswith("tests/house/"))
+    return result
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """Have no garbage collected while tests are read: nearly all that is made stays."""
