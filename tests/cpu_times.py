@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Generator, Iterable, Mapping
+from typing import cast
 
 import pytest
 
@@ -19,6 +20,8 @@ SPENT = "cpu_s"
 LAST = "last tests of each process, with what all share: the browser, the server of commands"
 OTHER = "reading tests, reporting"
 LINES = 30
+NAMED_S = 0.1
+"""What a single test must cost to be in the table."""
 
 
 def spent_s() -> float:
@@ -44,8 +47,8 @@ class CpuTimes:
     def __init__(self) -> None:
         self._began_s = 0.0
         self._is_last = False
-        self.rooms: Counter[str] = Counter()
-        self.tests: Counter[str] = Counter()
+        self.rooms: defaultdict[str, float] = defaultdict(float)
+        self.tests: defaultdict[str, float] = defaultdict(float)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(
@@ -69,16 +72,17 @@ class CpuTimes:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Take what a test has spent, from whichever process."""
         for name, value in report.user_properties:
-            if name == SPENT and isinstance(value, list | tuple):
-                room, seconds = value
-                self.rooms[str(room)] += seconds
+            if name == SPENT:
+                room, seconds = cast("tuple[str, float]", value)
+                self.rooms[room] += seconds
                 self.tests[report.nodeid] += seconds
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print the table."""
         terminalreporter.section("CPU seconds")
         stages = json.loads(os.environ.get(STAGES, "{}"))
-        for line in (*table(stages, self.rooms, total_s=spent_s()), "", *lines_of(self.tests.most_common(LINES))):
+        costly = [(name, seconds) for name, seconds in costliest(self.tests) if seconds >= NAMED_S]
+        for line in (*table(stages, self.rooms, total_s=spent_s()), "", *lines_of(costly)):
             terminalreporter.line(line)
 
 
@@ -90,13 +94,18 @@ def table(stages: Mapping[str, float], rooms: Mapping[str, float], *, total_s: f
         rooms: Seconds of the tests by room, as `room_of` names them.
         total_s: All that was spent, the stages included.
     """
-    kinds: Counter[str] = Counter()
+    kinds: defaultdict[str, float] = defaultdict(float)
     for room, seconds in rooms.items():
         kinds[room if room == LAST else f"tests: {room.partition(' ')[0]}"] += seconds
     rest_s = total_s - sum(stages.values()) - sum(rooms.values())
-    parts = [*stages.items(), *kinds.most_common(), (OTHER, rest_s), ("all", total_s)]
-    most = [(room, seconds) for room, seconds in Counter(rooms).most_common(LINES) if room != LAST]
+    parts = [*stages.items(), *costliest(kinds), (OTHER, rest_s), ("all", total_s)]
+    most = [(room, seconds) for room, seconds in costliest(rooms) if room != LAST]
     return lines_of((*parts, *most))
+
+
+def costliest(seconds: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Return the first in the order of what they cost."""
+    return sorted(seconds.items(), key=lambda each: -each[1])[:LINES]
 
 
 def lines_of(seconds: Iterable[tuple[str, float]]) -> list[str]:

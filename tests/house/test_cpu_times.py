@@ -50,14 +50,14 @@ def test_what_is_no_test_and_no_stage_is_the_rest() -> None:
 
 def test_a_run_prints_its_table_before_its_last_line() -> None:
     """Also of tests that run in other processes."""
-    test = "tests/house/test_styles.py"
+    test = "tests/house/test_tiers.py"
     command = [sys.executable, "-P", "-m", "pytest", "-q", "--cpu", "-n", "1", "-p", "no:cacheprovider", test]
     environment = {**os.environ, STAGES: '{"types": 7.5}'}
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=100, env=environment, check=False)
     assert done.returncode == 0, done.stdout
     lines = done.stdout.splitlines()
     assert "    7.5  types" in lines
-    assert any(line.endswith("  fast house") for line in lines)
+    assert any(line.endswith("  each house") for line in lines)
     assert any(f"  {test}::" in line for line in lines)
     assert "passed" in lines[-1]
 
