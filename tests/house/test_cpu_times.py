@@ -68,5 +68,5 @@ def test_a_stage_has_the_time_of_its_commands() -> None:
         subprocess.run([sys.executable, "-c", BUSY], check=True)
     with bootstrap._measured("idle", spent):  # pyright: ignore[reportPrivateUsage]
         sum(range(1_000_000))
-    assert spent["busy"] >= 0.3
+    assert spent["busy"] > 0.2
     assert spent["idle"] < 0.01
