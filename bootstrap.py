@@ -3,7 +3,7 @@
 
 python3 bootstrap.py demo              the demo cell with its dashboard
 python3 bootstrap.py demo --headless   the demo behavior once, no browser
-python3 bootstrap.py test              what must pass before a change lands; of the costly tests a quarter, by commit
+python3 bootstrap.py test              what must pass before a change lands; of the costly tests a fifth, by commit
 python3 bootstrap.py test --all        all tests; with options of pytest, what these choose of them
 python3 bootstrap.py test --fast       what needs no browser, process or physics: a few minutes
 python3 bootstrap.py lock [--upgrade]  requirements/*.lock for what pyproject.toml asks for
