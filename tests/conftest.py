@@ -18,8 +18,9 @@ import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
+from tests.cpu_times import CpuTimes
 from tests.tiers import SECOND_TRY, ThisRun, examples, kinds_of
-from tests.turns import Turn
+from tests.turns import Turn, defined_tests, takes_turns
 
 # Events of the interpreter when a process is started.
 PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
@@ -30,6 +31,7 @@ GLFW_VERSION = "def get_version(library_handle)"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add what chooses how much is run."""
+    parser.addoption("--cpu", action="store_true", help="print where the processor time went, by stage and room")
     parser.addoption("--nightly", action="store_true", help="more of the same: values marked `nightly`, examples")
     parser.addoption(
         "--turn", type=_turn, metavar="K/N", help="of what needs a browser, process or physics, the Kth of N shares"
@@ -48,6 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
         "nightly: more of what other values show already; run with --nightly",
     ):
         config.addinivalue_line("markers", line)
+    if config.getoption("--cpu"):
+        config.pluginmanager.register(CpuTimes())
     ThisRun.nightly = bool(config.getoption("--nightly"))
     # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
     settings.register_profile("flexcell", deadline=None, max_examples=examples(50, nightly=300))
@@ -57,14 +61,18 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave out files with a marker in a fast run, unread: what they import takes longest."""
-    is_test = collection_path.suffix == ".py" and collection_path.name.startswith("test_")
-    return True if is_test and _is_fast(config) and kinds_of(collection_path) else None
+    """Leave out files with a marker in a fast run, or without a test in a turn, unread: what they import takes long."""
+    if collection_path.suffix != ".py" or not collection_path.name.startswith("test_"):
+        return None
+    turn: Turn | None = config.getoption("--turn")
+    is_for_others = turn is not None and not turn.has_any_of(collection_path)
+    return True if is_for_others or (_is_fast(config) and kinds_of(collection_path)) else None
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark tests by what they need, and leave out those for the night."""
+    """Mark tests by what they need, and leave out those for the night; each must be one that turns know of."""
+    require_known_to_turns(items)
     for item in items:
         for kind in sorted(kinds_of(item.path)) or ("fast",):
             item.add_marker(getattr(pytest.mark, kind))
@@ -73,6 +81,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     left_out = [item for item in items if _is_left_out(item, config)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True, specname="pytest_collection_modifyitems")
+def pytest_house_first(items: list[pytest.Item]) -> Generator[None, object, object]:
+    """Have one process test the house, whatever order was drawn: it reads every source, once for all of its tests."""
+    result = yield
+    items.sort(key=lambda item: not item.nodeid.startswith("tests/house/"))
+    return result
 
 
 @pytest.hookimpl(wrapper=True)
@@ -89,6 +105,16 @@ def pytest_collection_finish() -> None:
     """Have the garbage collector pass by what was imported, which stays; a tenth of the time goes into that."""
     gc.collect()
     gc.freeze()
+
+
+def require_known_to_turns(items: list[pytest.Item]) -> None:
+    """Refuse a costly test that `tests/turns.py` does not see in the text of its file: no turn would have it."""
+    files = {item.path for item in items if item.path.suffix == ".py" and takes_turns(item.path)}
+    known = {file: defined_tests(file) for file in files}
+    for item in items:
+        if item.path in known and item.nodeid.partition("[")[0] not in known[item.path]:
+            problem = f"{item.nodeid} is not defined in its file, so that no turn would have it"
+            raise pytest.UsageError(f"{problem}: define it there (tests/turns.py)")
 
 
 def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:

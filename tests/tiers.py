@@ -43,8 +43,6 @@ FILES = {
     "tests/house/test_audit.py": "process",
     # It asks git for the commit.
     "tests/house/test_turns.py": "process",
-    # Its last example opens the cell of the two Pandas.
-    "tests/house/test_python_examples.py": "physics",
 }
 
 

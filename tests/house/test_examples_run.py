@@ -1,4 +1,4 @@
-"""Every YAML example of the guides does what it is shown for: behaviors run, other documents are taken."""
+"""Every YAML example of the guides is what it is shown for: behaviors have no mistake, other documents are taken."""
 
 from __future__ import annotations
 
@@ -7,14 +7,9 @@ import shutil
 from pathlib import Path
 from textwrap import indent
 
-import msgspec
-import numpy as np
 import pytest
 
-from engine.cause_chain import describe_cause
-from engine.cell.open_cell import OpenCell
 from engine.check import check_behavior
-from engine.clock import run_virtual
 from engine.document import parse_behavior
 from engine.document.cell import load_cell
 from engine.document.entries_document import load_entries
@@ -22,23 +17,19 @@ from engine.document.faults import parse_faults
 from engine.document.module_document import load_module
 from engine.document.substitutes import parse_substitutes
 from engine.document.sweep import parse_sweep
-from engine.messages.demonstrations import Trajectory
 from engine.registry import load_states
 from engine.runtime.control import load_breakpoints
 from engine.runtime.control.breakpoint import breakpoints_file
-from engine.skills.entries import WriteEntry
 from engine.sweep import SweepSubject, configurations
 from engine.sweep.search.search_plan import SearchPlan
 from engine.teaching import load_triggers
-from engine.testing.behavior_run import run_behavior
 from robots.scene.scene_builder import build_scene
+from tests.house.shown_examples import BEHAVIOR, SHOWN, shown
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "how-to" / "examples"
-PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]
 BEHAVIORS = ROOT / "behaviors"
-CELL = BEHAVIORS / "cells" / "dual_panda.yaml"
-BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
+ROBOT, FAULTS, BREAKPOINTS = "\nrobot:", "\nfaults:", "\nbreakpoints:"
 SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
 NOTES = "canvas_notes:"
@@ -48,44 +39,14 @@ MODULE = "\nmodule:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:", "unknown_bodies:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
-SHOWN = {
-    f"{page.relative_to(ROOT)}-{number}": text
-    for page in sorted(PAGES)
-    for number, text in enumerate(re.findall(r"(?ms)^```yaml\n(.*?)^```", page.read_text(encoding="utf-8")), 1)
-}
-
-
-def shown(*beginnings: str, holding: str = "") -> pytest.MarkDecorator:
-    """The examples that begin so, or hold this."""
-    chosen = [
-        pytest.param(text, id=name)
-        for name, text in SHOWN.items()
-        if (beginnings and text.startswith(beginnings)) or (holding and holding in text)
-    ]
-    return pytest.mark.parametrize("text", chosen)
 
 
 @shown(holding=BEHAVIOR)
-def test_a_behavior_runs_to_its_success(tmp_path: Path, text: str) -> None:
-    """In the cell it names, else that of the two Pandas; what it was shown by hand is in the store."""
-    file, store = tmp_path / "example.yaml", tmp_path / "store.db"
-    file.write_text(text.replace("../cells", str(CELL.parent)), encoding="utf-8")
-    cell = None if "\ncell:" in text else CELL
-    if "recording: led" in text:
-        run_virtual(lead_by_hand(store))
-    ran = run_behavior(file, catalogue=load_states(), store=store, cell=cell)
-    success = parse_behavior(text, file=file).success
-    assert ran.outcome in success, describe_cause(ran.result.cause) if ran.result.cause else ran.result
-
-
-async def lead_by_hand(store: Path) -> None:
-    """Keep the recording of a hand that turns the left arm by a quarter of a radian in two seconds."""
-    times = np.linspace(0.0, 2.0, 101)
-    joints = np.tile((0.0, -0.785398163, 0.0, -2.35619449, 0.0, 1.570796327, 0.785398163), (101, 1))
-    joints[:, 0] = 0.25 * np.sin(np.pi * np.clip(times - 0.2, 0.0, 1.6) / 3.2) ** 2
-    led = Trajectory(times_s=tuple(times.tolist()), joints=tuple(tuple(row) for row in joints.tolist()))
-    async with OpenCell(load_cell(CELL), store_path=str(store)) as cell:
-        await cell.bus.call(WriteEntry(kind="trajectory", name="led", value=msgspec.to_builtins(led)), to="store")
+def test_a_behavior_has_no_mistake(text: str) -> None:
+    """It runs to its success in `tests/behaviors/test_shown_behaviors.py`."""
+    text = text.replace("../cells", str(BEHAVIORS / "cells"))
+    behavior = parse_behavior(text, file=BEHAVIORS / "reconcycle" / "shown.yaml")
+    assert [str(each) for each in check_behavior(behavior, load_states()) if each.severity == "error"] == []
 
 
 @shown(*PARTS_OF_CELLS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from pathlib import Path
 
 from hatchling.builders.wheel import WheelBuilder
@@ -42,6 +43,13 @@ def shipped() -> set[str]:
     }
 
 
+@cache
+def wheel() -> tuple[WheelBuilder, frozenset[str]]:
+    """What makes the wheel, and the paths of its files: walking over them takes two seconds."""
+    builder = WheelBuilder(str(hatch_build.ROOT))
+    return builder, frozenset(file.distribution_path for file in builder.recurse_included_files())
+
+
 def name_of(title: str) -> str:
     """A package without its version."""
     return title.rpartition(" ")[0]
@@ -68,8 +76,7 @@ def test_a_notice_is_a_licence_with_its_whole_text() -> None:
 
 def test_the_wheel_carries_all_licences() -> None:
     """Ours, those of the models, and that of the page, where tools look for them and beside the page."""
-    builder = WheelBuilder(str(hatch_build.ROOT))
-    files = {file.distribution_path for file in builder.recurse_included_files()}
+    builder, files = wheel()
     assert f"editor_web/static/{NAME}" in files
     assert "robots/arms/ur10/LICENSE" in files
     core: CoreMetadata = builder.metadata.core  # pyright: ignore[reportUnknownMemberType] - hatchling leaves it open
@@ -82,8 +89,8 @@ def test_the_wheel_carries_all_licences() -> None:
 
 def test_the_wheel_has_no_other_files_of_others() -> None:
     """A font, a mesh or a picture that is added needs a notice first."""
-    builder = WheelBuilder(str(hatch_build.ROOT))
-    kinds = {Path(file.distribution_path).suffix for file in builder.recurse_included_files()}
+    _, files = wheel()
+    kinds = {Path(file).suffix for file in files}
     assert kinds <= {
         ".py",
         ".typed",

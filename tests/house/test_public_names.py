@@ -33,11 +33,12 @@ def _commands(group: object, path: tuple[str, ...] = ()) -> Iterator[tuple[str, 
 COMMANDS = list(_commands(get_command(app)))
 
 
-@pytest.mark.parametrize("face", FACES)
-def test_every_name_in_all_exists(face: str) -> None:
+def test_every_name_in_all_exists() -> None:
     """`__all__` is true."""
-    module = importlib.import_module(face)
-    assert [name for name in getattr(module, "__all__", ()) if not hasattr(module, name)] == []
+    faces = {face: importlib.import_module(face) for face in FACES}
+    assert len(faces) > 20
+    missing = {f: [n for n in getattr(module, "__all__", ()) if not hasattr(module, n)] for f, module in faces.items()}
+    assert [f"{face}.{name}" for face, names in missing.items() for name in names] == []
 
 
 def test_every_command_is_documented() -> None:

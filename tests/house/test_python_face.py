@@ -46,9 +46,12 @@ def test_type_checkers_see_the_names_that_can_be_imported(face: str) -> None:
     assert set(_stub(face)) == set(names)
 
 
-@pytest.mark.parametrize(("face", "name"), [(face, name) for face in LAZY_FACES for name in _stub(face)])
-def test_a_name_is_what_its_stub_says(face: str, name: str) -> None:
-    assert getattr(import_module(face), name) is getattr(import_module(_stub(face)[name]), name)
+@pytest.mark.parametrize("face", LAZY_FACES)
+def test_names_are_what_their_stub_says(face: str) -> None:
+    module = import_module(face)
+    stub = _stub(face)
+    assert stub
+    assert [n for n, home in stub.items() if getattr(module, n) is not getattr(import_module(home), n)] == []
 
 
 @pytest.mark.parametrize("face", LAZY_FACES)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import pytest
 
 import bootstrap
+from tests.conftest import require_known_to_turns
 from tests.tiers import ROOT, kinds_of
-from tests.turns import ALWAYS, Turn
+from tests.turns import ALWAYS, Turn, defined_tests
 
 COSTLY = ROOT / "tests/robots/arm/test_arm_in_physics.py"
 FAST = ROOT / "tests/engine/document/test_loader.py"
@@ -31,7 +35,7 @@ def test_a_costly_test_is_in_one_turn_with_all_its_values() -> None:
     "file",
     [
         FAST.relative_to(ROOT).as_posix(),
-        "tests/house/test_examples_run.py",
+        "tests/house/test_audit.py",
         "tests/robots/test_simulated_cell_stop.py",
         "tests/engine/stop/test_relay.py",
         "tests/engine/project/test_session_stops.py",
@@ -47,6 +51,28 @@ def test_what_is_fast_or_stops_robots_is_in_every_turn(file: str) -> None:
 def test_what_only_sounds_like_a_stop_takes_turns() -> None:
     """The name is read by words."""
     assert not ALWAYS.search("tests/robots/test_stopping_distance.py")
+
+
+def test_a_file_is_read_in_the_turns_that_have_a_test_of_it() -> None:
+    """A fast one in each."""
+    names = defined_tests(COSTLY)
+    assert len(names) > 2
+    for number in range(1, 21):
+        turn = Turn(number, 20)
+        assert turn.has_any_of(COSTLY) == any(turn.has(name, COSTLY) for name in names)
+        assert turn.has_any_of(FAST)
+    assert not all(Turn(number, 20).has_any_of(COSTLY) for number in range(1, 21))
+
+
+def test_tests_of_classes_are_known_and_one_that_is_not_defined_in_its_file_ends_the_run() -> None:
+    """It would be in no turn: nobody would see that it is missing."""
+    with_class = defined_tests(ROOT / "tests/engine/sweep/test_sweep_execution.py")
+    assert (
+        "tests/engine/sweep/test_sweep_execution.py::TestFailingRuns::test_each_way_to_fail_is_its_result" in with_class
+    )
+    item = SimpleNamespace(path=COSTLY, nodeid=f"{COSTLY.relative_to(ROOT).as_posix()}::test_made_by_a_function[1]")
+    with pytest.raises(pytest.UsageError, match=r"test_made_by_a_function\[1\] is not defined in its file"):
+        require_known_to_turns([cast("pytest.Item", item)])
 
 
 @pytest.mark.parametrize("text", ["", "3", "0/3", "4/3", "1/0", "a/b", "-1/3", "1/3/3"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from functools import cache
 
 import pytest
 from hypothesis import given
@@ -63,10 +64,15 @@ def _excludes(rate: float, source: random.Random, *, exact: bool = False) -> boo
     successes = 0
     for runs in range(1, 301):
         successes += source.random() < rate
-        interval = exact_interval(successes, runs) if exact else rate_interval(successes, runs)
+        interval = (_exact_interval if exact else _rate_interval)(successes, runs)
         if not interval.low <= rate <= interval.high:
             return True
     return False
+
+
+# Sweeps of the same rate have many counts in common.
+_exact_interval = cache(exact_interval)
+_rate_interval = cache(rate_interval)
 
 
 @pytest.mark.parametrize(
