@@ -29,6 +29,7 @@ _STEP_S = 0.001
 _FAST_S, _FAST_RAD = 0.8, 0.3
 _LINE_S, _LINE_M = 1.5, 0.15
 _REST_S = 1.0
+_ENDS = 10
 # A path error that does not end the motion: it is what is measured.
 _TOLERANCE = Tolerance(path_rad=1.0, goal_rad=1.0)
 
@@ -45,7 +46,7 @@ class _FreeArm:
         self.simulation.apply(ConfigureArm(arm="arm", settings=ControlSettings(controller=law)))
         self.control = self.simulation.control("arm")
         self._motion = 0
-        self.joint_error_rad = self.tool_error_m = self.torque_nm = 0.0
+        self.joint_error_rad = self.tool_error_m = self.torque_nm = self.waited_s = 0.0
         self.joints_to(np.array(subject.start_rad), 2.0)
 
     def joints_to(self, goal: Array, duration_s: float) -> None:
@@ -76,21 +77,25 @@ class _FreeArm:
 
     def _follow(self, trajectory: JointTrajectory) -> None:
         self._clear()
+        self.waited_s = -trajectory.duration_s
         self._motion += 1
         self.simulation.apply(
             FollowTrajectory(arm="arm", motion=self._motion, trajectory=trajectory, tolerance=_TOLERANCE)
         )
         while not any(isinstance(event, MotionFinished) for event in self.simulation.step()):
             self._measure()
+            self.waited_s += _STEP_S
+
+    def behind_m(self) -> float:
+        """Return how far the tool is from its set point now."""
+        desired = self.kinematics.tool_pose(self.control.motion.position)
+        return desired.distance_m(self.kinematics.tool_pose(self.control.state.position))
 
     def _measure(self) -> None:
         control = self.control
         error_rad = np.abs(control.motion.position - control.state.position)
-        desired = self.kinematics.tool_pose(control.motion.position)
         self.joint_error_rad = max(self.joint_error_rad, float(error_rad.max()))
-        self.tool_error_m = max(
-            self.tool_error_m, desired.distance_m(self.kinematics.tool_pose(control.state.position))
-        )
+        self.tool_error_m = max(self.tool_error_m, self.behind_m())
         self.torque_nm = max(self.torque_nm, float(np.abs(control.state.external_nm).max()))
 
 
@@ -108,6 +113,29 @@ def _line(subject: Subject, law: ControllerName, realism: RealismName) -> str:
     moving_m = arm.tool_error_m
     arm.rest()
     return f"{moving_m * 1e3:.2f} / {arm.tool_error_m * 1e3:.2f}"
+
+
+def ends(subject: Subject, law: ControllerName, realism: RealismName) -> tuple[list[float], list[float]]:
+    """Return by how much the tool was behind where motions were reported as reached, m, and for how long each waited.
+
+    Ten motions of the joints to random goals of up to 0.3 rad, quick and slow ones, as friction holds the slow ones.
+    """
+    arm, random = _FreeArm(subject, law, realism), np.random.default_rng(3)
+    behind_m: list[float] = []
+    waited_s: list[float] = []
+    for k in range(_ENDS):
+        offset = (0.3, 0.3, 0.05, 0.05, 0.01)[k % 5] * random.uniform(-1.0, 1.0, len(subject.start_rad))
+        arm.joints_to(np.array(subject.start_rad) + offset, _FAST_S if k % 2 else 2.0)
+        behind_m.append(arm.behind_m())
+        waited_s.append(max(0.0, arm.waited_s))
+        arm.rest()
+    return behind_m, waited_s
+
+
+def _reached(subject: Subject, law: ControllerName, realism: RealismName) -> str:
+    behind_m, waited_s = ends(subject, law, realism)
+    behind, waited = np.array(behind_m) * 1e3, np.array(waited_s) * 1e3
+    return f"{np.mean(behind):.2f} / {max(behind):.2f}; {np.mean(waited):.0f} / {max(waited):.0f}"
 
 
 def _guarded(subject: Subject, realism: RealismName) -> str:
@@ -138,6 +166,12 @@ FIGURES: dict[str, Callable[[RealismName], str]] = {
         f"{arm.model}, {law.removesuffix('_impedance')}: tool error along 0.15 m in 1.5 s / at rest, mm":
             partial(_line, arm, law)
         for arm in (PANDA, UR10)
+        for law in LAWS
+    },
+    **{
+        f"{arm.model}, {law.removesuffix('_impedance')}: tool behind at `reached`, mean / worst mm; waited for it, ms":
+            partial(_reached, arm, law)
+        for arm in (PANDA, UR10, IRB4600)
         for law in LAWS
     },
     **{f"{arm.model}: peak of 10 N wanted on a rigid surface, N": partial(_guarded, arm) for arm in (PANDA, UR10)},

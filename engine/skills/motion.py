@@ -30,11 +30,15 @@ class JointMotionFeedback(Message, frozen=True, kw_only=True):
 
 
 class JointMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
-    """The measured configuration at the end, radians, and the configuration `start` of the motion."""
+    """The measured configuration at the end, radians, and the configuration `start` of the motion.
+
+    `deviation_rad` is how far the joint that is farthest from its set point is there.
+    """
 
     joints: tuple[float, ...]
     duration_s: float
     start: tuple[float, ...] = ()
+    deviation_rad: float = 0.0
 
 
 class CartMotionFeedback(Message, frozen=True, kw_only=True):
@@ -45,11 +49,15 @@ class CartMotionFeedback(Message, frozen=True, kw_only=True):
 
 
 class CartMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
-    """The measured pose of the tool centre point at the end, and the configuration `start` of the motion."""
+    """The measured pose of the tool centre point at the end, and the configuration `start` of the motion.
+
+    `deviation_rad` is how far the joint that is farthest from its set point is there.
+    """
 
     pose: Pose
     duration_s: float
     start: tuple[float, ...] = ()
+    deviation_rad: float = 0.0
 
 
 class JointTrapVel(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):

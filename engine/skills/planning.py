@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 import msgspec
+from msgspec import UNSET, UnsetType
 
 from engine.messages import Message, Pose, Vector3
 from engine.skill import Action, Capability
@@ -120,7 +121,8 @@ class FreeMotionResult(Message, frozen=True, kw_only=True):
 
     `stops` counts the stops before a predicted collision, `replans` the continuations along another path,
     `reused` those along the old path because it was free again. `blocked` names the obstacle when the motion was
-    given up because its path was blocked for longer than its patience; else it is empty.
+    given up because its path was blocked for longer than its patience; else it is empty. `deviation_rad` is how far
+    the joint that is farthest from its set point is at the end; it is unset in older recordings.
     """
 
     joints: tuple[float, ...]
@@ -130,6 +132,7 @@ class FreeMotionResult(Message, frozen=True, kw_only=True):
     reused: int
     waited_s: float
     blocked: str = ""
+    deviation_rad: float | UnsetType = UNSET
 
 
 class Adaptation(Message, frozen=True, kw_only=True):

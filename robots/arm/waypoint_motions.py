@@ -76,7 +76,12 @@ class WaypointMotions:
 
         def result(duration_s: float) -> WaypointsResult:
             return WaypointsResult(
-                joints=runner.measured(), duration_s=duration_s, start=start, waypoints=plan.waypoints, passed=passed
+                joints=runner.measured(),
+                duration_s=duration_s,
+                start=start,
+                deviation_rad=runner.deviation_rad(),
+                waypoints=plan.waypoints,
+                passed=passed,
             )
 
         ended = await runner.carry_out(

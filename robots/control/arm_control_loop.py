@@ -75,7 +75,9 @@ class ArmControlLoop:
         """Tool centre point in the frame of the tool link, (3,), from the settings."""
         self.state = ArmState(kinematics)
         self._touching = touching
-        self.motion = MotionExecutor(joints=model.arm_joints, limits=limits, touching=self._felt)
+        self.motion = MotionExecutor(
+            joints=model.arm_joints, limits=limits, touching=self._felt, settling=self._is_settling
+        )
         self._kinematics = kinematics
         self._dynamics = dynamics = ArmDynamics(model, base=kinematics.base, gravity_m_s2=gravity_m_s2)
         # Determines the joint damping.
@@ -115,6 +117,9 @@ class ArmControlLoop:
     def reflex(self) -> bool:
         """True from a reflex stop until `recover`."""
         return bool(self._reflex.reason)
+
+    def _is_settling(self) -> bool:
+        return self._friction is not None and self._friction.is_settling
 
     def _felt(self) -> str:
         """Describe what the arm touches, and what it carries that its settings do not know."""
@@ -236,7 +241,7 @@ class ArmControlLoop:
         friction = self._friction
         if friction is not None:
             if motion.leads:
-                feedforward_nm += friction.along(motion.velocity)
+                feedforward_nm += friction.ahead(motion.velocity)
             else:
                 feedforward_nm += friction.helping(state.velocity, pushed_nm=state.wrench @ state.jacobian)
             bias_nm = bias_nm + friction.along(state.velocity)

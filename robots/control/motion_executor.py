@@ -43,13 +43,17 @@ class MotionExecutor:
     `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
     control period with the measured arm. `pace` is the speed override of every motion, `permitted_pace` the share of
     its full speed that separation monitoring permits, `controller_pace` that which a real controller permits of any
-    speed.
+    speed. `touching` says what the arm touches, `settling` whether its controller still brings it nearer to a set point
+    that stands.
     """
 
-    def __init__(self, *, joints: tuple[str, ...], limits: JointLimits, touching: Callable[[], str]) -> None:
+    def __init__(
+        self, *, joints: tuple[str, ...], limits: JointLimits, touching: Callable[[], str], settling: Callable[[], bool]
+    ) -> None:
         self._joints = joints
         self._limits = limits
         self._touching = touching
+        self._settling = settling
         self._following: _ActiveMotion | None = None
         self._rest_s = 0.0
         self.pace = 1.0
@@ -233,13 +237,16 @@ class MotionExecutor:
         goal = following.generator.goal
         error = np.abs((position if goal is None else goal) - position)
         worst = int(np.argmax(error))
-        if at_rest and error[worst] <= following.tolerance.goal_rad:
+        tolerance = following.tolerance
+        is_away = error[worst] > tolerance.in_position_rad
+        waits = is_away and following.waited_s < tolerance.in_position_s and self._settling()
+        if at_rest and not waits and error[worst] <= tolerance.goal_rad:
             return self._finish(following, MotionEnd.REACHED, "")
         following.waited_s += step_s
-        if following.waited_s >= following.tolerance.settle_s:
+        if following.waited_s >= tolerance.settle_s:
             following.ending, following.waited_s = MotionEnd.FAILED, 0.0
             moving = "" if at_rest else " and still moving"
-            settle = f"away from the goal{moving} after {following.tolerance.settle_s:g} s"
+            settle = f"away from the goal{moving} after {tolerance.settle_s:g} s"
             following.reason = self._reason(worst, float(error[worst]), settle)
         return ()
 

@@ -28,11 +28,17 @@ class JointTrajectory:
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerance:
-    """Maximum error of the measured joints: on the path, and at the goal within `settle_s`."""
+    """Maximum error of the measured joints: on the path, and at the goal within `settle_s`.
+
+    Nearer to the goal than `in_position_rad` an arm is in position. Farther away it gets up to `in_position_s` as long
+    as its controller still takes over what friction holds back; then it has reached the goal as near as it gets.
+    """
 
     path_rad: float = 0.15
     goal_rad: float = 0.01
     settle_s: float = 1.0
+    in_position_rad: float = 0.0003
+    in_position_s: float = 0.2
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,6 +29,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "BusParameter ~ EntryDraft": "a setting and an entry, both typed and named",
     "CartDMP ~ JointDMP": CARTESIAN,
     "CartFit ~ JointFit": CARTESIAN,
+    "CartMotionResult ~ JointMotionResult": "where the tool is measured; where the joints are",
     "Close ~ Open": "of a hand: closing has a share",
     "Concurrency ~ ConcurrencySpec": "the container that executes what the document says",
     "EntryChange ~ EntryChanged": "a change with its value; the topic has none",

@@ -25,6 +25,7 @@ from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
 from robots.port import ArmPort, Array, Motion, MotionEnd, MotionReport, MotionStream, Tolerance
+from robots.port.set_point import to_set_point
 from robots.supervise_goal import supervise_goal
 
 T = TypeVar("T")
@@ -139,6 +140,10 @@ class MotionRunner:
     def measured(self) -> tuple[float, ...]:
         """Return the measured joints."""
         return tuple(self.port.sample().position_rad.tolist())
+
+    def deviation_rad(self) -> float:
+        """Return how far the measured joint that is farthest from its set point is."""
+        return to_set_point(self.port.sample(), self.model.arm_joints).deviation_rad
 
     def set_point(self) -> tuple[float, ...]:
         """Return the currently commanded joints, where the next motion starts."""

@@ -34,7 +34,9 @@ async def follow_joints(
         handle.feedback(JointMotionFeedback(joints=runner.measured(), progress=motion.progress))
 
     def measured_result(duration_s: float) -> JointMotionResult:
-        return JointMotionResult(joints=runner.measured(), duration_s=duration_s, start=start)
+        return JointMotionResult(
+            joints=runner.measured(), duration_s=duration_s, start=start, deviation_rad=runner.deviation_rad()
+        )
 
     ended = await runner.carry_out(
         lambda: monitored(runner.port.follow(trajectory, tolerance=runner.tolerance)),
@@ -58,7 +60,9 @@ async def follow_tool(
     start = runner.set_point()
 
     def measured_result(duration_s: float) -> CartMotionResult:
-        return CartMotionResult(pose=runner.measured_pose(), duration_s=duration_s, start=start)
+        return CartMotionResult(
+            pose=runner.measured_pose(), duration_s=duration_s, start=start, deviation_rad=runner.deviation_rad()
+        )
 
     ended = await runner.carry_out(
         lambda: monitored(runner.port.follow(trajectory, tolerance=runner.tolerance)),

@@ -274,4 +274,5 @@ class _MotionDisplay:
             reused=statistics.reused,
             waited_s=motion.waited_s if motion is not None else 0.0,
             blocked=statistics.blocked,
+            deviation_rad=self._runner.deviation_rad(),
         )

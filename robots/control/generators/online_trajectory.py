@@ -20,8 +20,9 @@ _REST = 1e-9
 # Slower joints are not sent to their limit, which they would reach only after hours.
 _SLOW_RAD_S = 0.01
 _SLOW_ROOM_RAD = 1e-4
-# Rounding tolerance of a stop that ends exactly at a limit.
-_ROUNDING_RAD = 1e-6
+# Rounding tolerance of a stop that ends exactly at a limit. What is beyond the limit is cut off, in one period: with
+# 1e-6 rad that would be a jerk of 1000 rad/s³.
+_ROUNDING_RAD = 1e-8
 _ANSWER_HZ = 250.0
 
 

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from robots.control.generators.guarded_motion import GuardedMotion
 from robots.control.generators.trajectory_playback import TrajectoryPlayback
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.control.motion_executor import MotionExecutor
-from robots.port import Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
+from robots.port import Array, ContactCondition, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from tests.robots.control.limit_watch import limits
 from tests.robots.control.plane_arm import plane_state
 
@@ -42,9 +43,11 @@ def run(
     return [], limit
 
 
-def new_motion(goal: Array, tolerance: Tolerance, *, contact: str = "") -> MotionExecutor:
+def new_motion(
+    goal: Array, tolerance: Tolerance, *, contact: str = "", settling: Callable[[], bool] = lambda: False
+) -> MotionExecutor:
     """Return an arm's motions with number 7 under way."""
-    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: contact)
+    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: contact, settling=settling)
     motion.initialize(START)
     motion.start(
         7,
@@ -79,6 +82,48 @@ def test_an_arm_that_stays_off_its_goal_fails_after_the_settling_time() -> None:
     assert isinstance(end, MotionFinished)
     assert end.report.reason == "shoulder is 0.020 rad away from the goal after 0.5 s"
     assert 1000 <= steps < 1200
+
+
+@pytest.mark.parametrize(
+    ("behind_rad", "is_settling", "waits_s"),
+    [(0.002, True, 0.3), (0.002, False, 0.0), (0.0004, True, 0.0)],
+    ids=["behind", "friction holds it", "in position"],
+)
+def test_an_arm_behind_its_goal_gets_a_while_as_long_as_its_controller_brings_it_nearer(
+    *, behind_rad: float, is_settling: bool, waits_s: float
+) -> None:
+    tolerance = Tolerance(in_position_rad=0.0005, in_position_s=0.3)
+    motion = new_motion(np.array([0.2, 0.1]), tolerance, settling=lambda: is_settling)
+    events, steps = run(motion, lambda desired: desired - behind_rad)
+    assert events == [MotionFinished(motion=7, progress=1.0, report=MotionReport(end=MotionEnd.REACHED))]
+    assert steps * 0.001 == pytest.approx(0.5 + waits_s, abs=0.002)
+
+
+def test_an_arm_has_reached_its_goal_as_soon_as_its_controller_has_brought_it_there() -> None:
+    is_settling = True
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance(in_position_s=0.3), settling=lambda: is_settling)
+    assert run(motion, lambda desired: desired - 0.002, limit=600) == ([], 600)
+    is_settling = False
+    events, steps = run(motion, lambda desired: desired - 0.002)
+    assert (len(events), steps) == (1, 0)
+
+
+def test_after_a_contact_nothing_is_left_to_reach() -> None:
+    """What presses back holds the arm behind its set point."""
+    trajectory = TrajectoryPlayback(
+        ramp(np.array([0.2, 0.1])), acceleration_rad_s2=np.full(2, 10.0), jerk_rad_s3=np.full(2, 1000.0)
+    )
+    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: "", settling=lambda: True)
+    motion.initialize(START)
+    motion.start(7, GuardedMotion(trajectory, ContactCondition(force_n=5.0)), Tolerance(in_position_s=0.3))
+    events: list[AnyMotionEvent] = []
+    for step in range(450):
+        state = plane_state(motion.position - 0.002, np.zeros(2))
+        state.wrench[2] = 10.0 if step > 200 else 0.0
+        events.extend(motion.step(0.001, state))
+    (end,) = events
+    assert isinstance(end, MotionFinished)
+    assert (end.report.end, end.report.contact) == (MotionEnd.REACHED, True)
 
 
 def test_an_arm_that_never_rests_is_not_called_cancelled() -> None:

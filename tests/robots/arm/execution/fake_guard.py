@@ -48,6 +48,7 @@ class FakeGuard:
         self.rules: list[PathRules] = []
         self.paths: list[JointTrajectory] = []
         self.reserved: list[float | None] = []
+        self.renewed: list[JointTrajectory] = []
         self.unobserved_reason = ""
         self.required = 0
         self._watchers: list[Callable[[frozenset[str]], None]] = []
@@ -110,6 +111,7 @@ class FakeGuard:
 
     def renew(self, trajectory: JointTrajectory) -> None:
         """Reserve another path from the next update on."""
+        self.renewed.append(trajectory)
 
     def update(self, passed_s: float) -> None:
         """Reserve the remaining path."""

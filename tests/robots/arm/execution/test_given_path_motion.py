@@ -112,6 +112,13 @@ async def test_the_reserved_path_gets_shorter_while_it_moves() -> None:
         assert one.fake.reserved[-1] is None
 
 
+async def test_the_path_that_it_follows_is_the_one_that_is_reserved() -> None:
+    path = line(duration_s=DURATION_S)
+    async with moved(path=path) as one:
+        assert one.fake.renewed == [path]
+        assert one.fake.reserved == [0.0]
+
+
 async def test_with_patience_it_waits_at_rest_and_goes_on_when_the_path_is_free() -> None:
     async with moved(patience_s=2.0) as one:
         await asyncio.sleep(1.0)
@@ -226,6 +233,18 @@ async def test_a_held_arm_is_not_checked_and_does_not_lose_its_patience() -> Non
         await one.motion.resume()
         assert one.moves
         assert one.fake.asked_s == [0.0]
+
+
+async def test_a_short_hold_gives_the_whole_patience_again_too() -> None:
+    async with moved(patience_s=0.5) as one:
+        one.fake.change("wall", answer=blocked(2.0))
+        await asyncio.sleep(0.3)
+        await one.motion.hold()
+        await asyncio.sleep(0.05)
+        await one.motion.resume()
+        report = await one.motion.report()
+        assert report.reason == "left/hand would touch wall"
+        assert one.time_s == pytest.approx(0.35 + 0.5 + STOPPING_S, abs=0.01)
 
 
 async def test_resume_returns_when_the_path_is_known_to_be_blocked() -> None:

@@ -274,7 +274,7 @@ def test_a_joint_at_its_limit_ends_it_with_its_name() -> None:
 
 def test_the_motion_then_ends_as_failed_with_these_words() -> None:
     generator = pulled()
-    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: "")
+    motion = MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: "", settling=lambda: False)
     motion.initialize(generator.position)
     motion.start(1, generator, Tolerance())
     events: tuple[AnyMotionEvent, ...] = ()
@@ -328,7 +328,10 @@ def _share_at(passed: float) -> float:
 def test_a_tool_that_is_pushed_on_and_on_comes_to_rest_within_two_seconds(after: str) -> None:
     """Nothing holds the force up, so giving way would never end by itself."""
     generator = tracking(task(0.5, admittance=Compliance(active=PRESS_Y.active, reach_m=1.0)))
-    state, motion = plane_state(), MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: "")
+    state, motion = (
+        plane_state(),
+        MotionExecutor(joints=("shoulder", "elbow"), limits=limits(), touching=lambda: "", settling=lambda: False),
+    )
     motion.initialize(generator.position)
     motion.start(1, generator, Tolerance())
     state.wrench[1] = -25.0

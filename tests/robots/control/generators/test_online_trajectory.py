@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from robots.control.generators.online_trajectory import OnlineTrajectoryGenerator
 from tests.robots.control.limit_watch import STEP_S, LimitWatch, limits
+from tests.robots.panda_arm import panda_model
 
 numbers = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 asks = st.tuples(st.sampled_from(["go", "track", "run", "together", "brake"]), numbers, st.integers(1, 150))
@@ -94,3 +95,18 @@ def test_a_set_point_that_takes_over_a_moving_arm_stops_from_its_velocity() -> N
         shaper.brake(STEP_S)
     assert shaper.at_rest
     assert 0.3 < shaper.position[0] < 0.36
+
+
+def test_a_joint_that_stops_at_its_limit_does_not_jerk_there() -> None:
+    """What a stop goes beyond the limit is cut off at once, so it has to be very little."""
+    arm = panda_model().limits
+    lower_rad, jerk_rad_s3 = np.array(arm.lower_rad), np.array(arm.jerk_rad_s3)
+    for seed in range(50, 60):
+        shaper = OnlineTrajectoryGenerator(limits=arm, start=lower_rad + 0.05)
+        velocity = -np.random.default_rng(seed).uniform(0.05, 0.6, len(lower_rad))
+        target, sent = lower_rad + 0.05, [lower_rad + 0.05] * 3
+        for _ in range(300):
+            target = target + velocity * STEP_S
+            shaper.track(STEP_S, position=target, velocity=velocity, acceleration=np.zeros_like(velocity), pace=1.0)
+            sent.append(shaper.position.copy())
+        assert (np.abs(np.diff(sent, 3, axis=0)) / STEP_S**3 < 1.01 * jerk_rad_s3).all(), seed

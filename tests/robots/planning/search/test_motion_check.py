@@ -85,6 +85,63 @@ def test_a_contact_that_begins_before_the_end_section_is_refused(deep_m: float) 
     assert (check(DOWN, scene=scene).blocked_at_s is not None) is checker.in_collision(rows[before])
 
 
+def sampled(rows: Array) -> JointTrajectory:
+    """Return a way through these configurations, a sample each 2 ms."""
+    return JointTrajectory(dt_s=0.002, position_rad=rows, velocity_rad_s=np.zeros_like(rows))
+
+
+def touched_first_at(row: int, rows: Array, *, deep_m: float) -> PlanningScene:
+    """Return the scene with a plate that the tool touches at a row, so deep, and not at the row before."""
+    x, y, z = lowest(rows[row]).tolist()
+
+    def scene_at(raised_m: float) -> PlanningScene:
+        return PANDA.with_obstacles(box("plate", (0.2, 0.2, 0.02), (x, y, z - 0.01 + raised_m)))
+
+    low_m, high_m = -0.05, 0.02
+    while high_m - low_m > 1e-5:
+        middle_m = (low_m + high_m) / 2.0
+        if ExactChecker(scene_at(middle_m), ARM).in_collision(rows[row]):
+            high_m = middle_m
+        else:
+            low_m = middle_m
+    scene = scene_at(high_m + deep_m)
+    checker = ExactChecker(scene, ARM)
+    assert [checker.in_collision(rows[k]) for k in (row - 1, row)] == [False, True]
+    return scene
+
+
+def left_m(rows: Array) -> Array:
+    """Return how far the farthest moved point of the tool is from its end at each row."""
+    points = ExactChecker(PANDA, ARM).tool_points
+    return np.array([np.linalg.norm(points(row) - points(rows[-1]), axis=1).max() for row in rows])
+
+
+@pytest.mark.parametrize("more", range(5))
+def test_a_contact_that_begins_one_sample_before_the_end_section_is_refused(more: int) -> None:
+    """Whichever of the samples are looked at."""
+    rows = np.array([turned(3, by) for by in np.arange(-0.2 + 0.001 * more, -0.4, -0.001)])
+    before = int(np.flatnonzero(left_m(rows) > CONTACT_M)[-1])
+    scene = touched_first_at(before, rows, deep_m=0.0001)
+    assert check(sampled(rows), scene=scene).blocked_at_s is not None
+
+
+def test_a_contact_that_begins_with_the_end_section_is_meant() -> None:
+    """The samples are so far apart that all are looked at."""
+    fine = np.array([turned(3, by) for by in np.arange(-0.2, -0.4, -0.0005)])
+    left = left_m(fine)
+    rows = fine[[int(np.flatnonzero(left > share * CONTACT_M)[-1]) for share in (9.0, 4.0, 1.4, 0.8)] + [-1]]
+    assert check(sampled(rows), scene=touched_first_at(3, rows, deep_m=0.0005)).blocked_at_s is None
+
+
+def test_a_motion_that_is_shorter_than_the_end_section_may_touch_from_its_second_sample_on() -> None:
+    fine = np.array([turned(3, by) for by in np.arange(-0.2, -0.4, -0.0005)])
+    left = left_m(fine)
+    rows = fine[[int(np.flatnonzero(left > share * CONTACT_M)[-1]) for share in (0.8, 0.4)] + [-1]]
+    scene = touched_first_at(1, rows, deep_m=0.0005)
+    assert check(sampled(rows), scene=scene).blocked_at_s is None
+    assert check(sampled(rows), scene=scene, contact="never").blocked_at_s == 0.002
+
+
 def test_a_contact_of_the_tool_ends_the_path_of_a_guarded_move_and_one_of_another_link_does_not() -> None:
     found = check(DOWN, scene=below(BENT, deep_m=0.05), contact="ends_path")
     assert found.blocked_at_s is None
@@ -119,6 +176,17 @@ def test_only_what_is_still_to_come_counts() -> None:
     scene = PANDA.with_obstacles(WALL)
     assert check(WAY, scene=scene, from_s=WAY.duration_s - 0.05).blocked_at_s is None
     assert check(WAY, scene=scene, from_s=0.2).blocked_at_s == check(WAY, scene=scene).blocked_at_s
+
+
+def test_what_is_seen_ahead_of_a_check_that_begins_in_the_middle_is_found() -> None:
+    """Where the path was known to be free, only the rows near what is seen are looked at exactly."""
+    grid = grid_of(np.ones((4, 4, 4)), corner_m=(0.3, 0.2, 0.5))
+    known = ScenePlanner(check_s=2e-5)
+    assert check(WAY, planner=known, contact="never").blocked_at_s is None
+    found = check(WAY, occupancy=grid, from_s=0.9, contact="never", planner=known)
+    assert found.blocked_at_s is not None
+    assert found.blocked_at_s > 1.2
+    assert found == check(WAY, occupancy=grid, from_s=0.9, contact="never", planner=ScenePlanner(check_s=2e-5))
 
 
 THERE_AND_BACK = JointTrajectory(

@@ -14,7 +14,7 @@ from benchmarks.planning_scenes import ARM, alone, box, cases
 from engine.errors import CellError
 from engine.messages import Pose
 from engine.messages.sensing import OccupancyGrid
-from engine.messages.shapes import Box, Solid
+from engine.messages.shapes import Box, Solid, Sphere
 from robots.planning.request import (
     CollisionRequest,
     JointGoal,
@@ -87,6 +87,12 @@ def test_the_first_touch_of_an_obstacle_is_found_to_the_sample() -> None:
     assert found.blocked_at_s == exact_s == found.looked_s
     assert found.pairs
     assert all("wall" in pair for pair in found.pairs)
+
+
+@pytest.mark.parametrize("y_m", np.linspace(0.102, 0.108, 7).tolist())
+def test_the_first_touch_is_found_to_the_sample_wherever_it_lies_between_two_looks(y_m: float) -> None:
+    scene = PANDA.with_obstacles(box("wall", (0.3, 0.05, 0.6), (0.4, y_m, 0.3)))
+    assert check(WAY, scene=scene).blocked_at_s == first_touch_s(ExactChecker(scene, ARM), WAY)
 
 
 def test_only_what_is_still_to_come_counts() -> None:
@@ -219,6 +225,29 @@ def test_an_arm_within_the_margin_may_go_away_but_not_nearer() -> None:
     returned = check(there, scene=scene, margin_m=0.05)
     assert returned.blocked_at_s is not None
     assert returned.blocked_at_s > 2.0
+
+
+@pytest.mark.parametrize("by_rad", np.linspace(0.2, 0.24, 5).tolist())
+def test_an_arm_that_leaves_the_margin_within_one_step_may_not_come_back_into_it(by_rad: float) -> None:
+    """A ball far out on the hand moves by more than what its spheres extend beyond it."""
+    ball = Solid(shape=Sphere(radius_m=0.01), pose=Pose(xyz=(0.0, 0.0, 1.0)))
+    held = PANDA.with_attached(AttachedPart(name="ball", arm=ARM, solids=(ball,)))
+    checker = ExactChecker(held, ARM)
+    middle, moved = (checker.held_points(turned(5, by)).mean(axis=0) for by in (0.0, 1e-3))
+    ahead = (moved - middle) / np.linalg.norm(moved - middle)
+    # Its surface is 47 mm from that of the ball.
+    wall = box("wall", (0.1, 0.1, 0.1), tuple((middle - (0.01 + 0.047 + 0.05) * ahead).tolist()))
+    out, back = line(HOME, turned(5, by_rad)), line(turned(5, by_rad), HOME)
+    there = JointTrajectory(
+        dt_s=0.002,
+        position_rad=np.vstack((out.position_rad, back.position_rad)),
+        velocity_rad_s=np.vstack((out.velocity_rad_s, back.velocity_rad_s)),
+    )
+    assert check(out, scene=held.with_obstacles(wall), margin_m=0.05).blocked_at_s is None
+    returned = check(there, scene=held.with_obstacles(wall), margin_m=0.05)
+    assert returned.pairs == (("ball", "wall"),)
+    assert returned.blocked_at_s is not None
+    assert 3.8 < returned.blocked_at_s < 3.9
 
 
 def test_the_same_check_has_the_same_answer_whatever_was_asked_before() -> None:
