@@ -27,10 +27,13 @@ from robots.drivers.abb.egm.egm_socket import EgmSocket
 from robots.drivers.abb.emulation.controller_panel import ControllerPanel
 from robots.drivers.abb.emulation.egm_source import EgmSource
 from robots.drivers.abb.emulation.emulated_controller import EmulatedController
+from robots.drivers.abb.emulation.emulated_signals import EmulatedSignals
 from robots.drivers.abb.emulation.rws_resources import RwsResources
 from robots.drivers.abb.emulation.rws_server import RwsServer
 from robots.drivers.abb.rws.rws_client import RwsClient
 from robots.drivers.abb.rws.rws_state import (
+    SignalUnknown,
+    digital_signal,
     error_text,
     latest_error,
     mode_selector,
@@ -50,6 +53,8 @@ _DRIVER = ("127.9.9.9", 6510)
 _LIMIT_S = 0.05
 _MOST_BYTES = 65536
 _PATHS = ("/rw/panel/ctrlstate", "/rw/rapid/execution", "/rw/elog/0", "/ctrl/identity", "/rw/nothing")
+_SIGNAL = "diDoor"
+_READ = (*_PATHS[:4], f"/rw/iosystem/signals/{_SIGNAL}")
 
 
 def egm_codec() -> FuzzTarget:
@@ -116,8 +121,8 @@ def egm_socket() -> FuzzTarget:
 
 def rws_transport() -> FuzzTarget:
     """The HTTP client of the driver: each reading gets one answer, and the connection is closed."""
-    resources = RwsResources(*_controller())
-    bodies = [msgspec.json.encode({"_embedded": {"_state": resources.read(path)}}) for path in _PATHS[:4]]
+    resources = RwsResources(*_controller(), EmulatedSignals([_SIGNAL]))
+    bodies = [msgspec.json.encode({"_embedded": {"_state": resources.read(path)}}) for path in _READ]
     heads = [f"HTTP/1.1 200 OK\r\nContent-Length: {len(body)}\r\n\r\n".encode() for body in bodies]
     challenge = b'HTTP/1.1 401 No\r\nWWW-Authenticate: Digest realm="r", qop="auth", nonce="n"\r\n\r\n'
     valid = (*(head + body for head, body in zip(heads, bodies, strict=True)), challenge)
@@ -137,7 +142,7 @@ def rws_transport() -> FuzzTarget:
     def feed(packet: bytes) -> str:
         answers[0] = packet
         client = RwsClient(host, port, user="user", password="password", timeout_s=_LIMIT_S)
-        transport = RwsTransport("fuzz", lambda: client)
+        transport = RwsTransport("fuzz", lambda: client, signals=[_SIGNAL])
         transport.open()
         try:
             transport.read()
@@ -153,12 +158,12 @@ def rws_transport() -> FuzzTarget:
 
 def rws_answers() -> FuzzTarget:
     """Answers to each request of the driver."""
-    resources = RwsResources(*_controller())
+    resources = RwsResources(*_controller(), EmulatedSignals([_SIGNAL]))
     valid = (
-        *(msgspec.json.encode({"_embedded": {"_state": resources.read(path)}}) for path in _PATHS[:4]),
+        *(msgspec.json.encode({"_embedded": {"_state": resources.read(path)}}) for path in _READ),
         b'{"_embedded": {"status": {"code": "-5", "msg": "not allowed"}}}',
     )
-    decoders = (panel_state, mode_selector, rapid_execution, speed_share, latest_error)
+    decoders = (panel_state, mode_selector, rapid_execution, speed_share, latest_error, digital_signal)
 
     def feed(packet: bytes) -> str:
         error_text(packet)
@@ -168,6 +173,8 @@ def rws_answers() -> FuzzTarget:
                 decode(packet)
             except AbbLinkError as error:
                 refused = error.fault.value
+            except SignalUnknown:
+                refused = "unknown signal"
             else:
                 return ""
         try:
@@ -183,12 +190,17 @@ def rws() -> FuzzTarget:
     """Requests without the password, with which nothing is done, and reading ones with it."""
     controller, panel = _controller()
     server = RwsServer(
-        RwsResources(controller, panel), WireFaults(), host="127.0.0.1", port=0, user="user", password="password"
+        RwsResources(controller, panel, EmulatedSignals([_SIGNAL])),
+        WireFaults(),
+        host="127.0.0.1",
+        port=0,
+        user="user",
+        password="password",
     )
     challenge = server.answer(b"GET /rw/system HTTP/1.1\r\n\r\n", b"").decode("latin-1")
     realm, nonce = (challenge.partition(f'{name}="')[2].partition('"')[0] for name in ("realm", "nonce"))
     valid = (
-        *(_authentic("GET", f"{path}?json=1", realm, nonce) for path in _PATHS),
+        *(_authentic("GET", f"{path}?json=1", realm, nonce) for path in (*_PATHS, *_READ[4:])),
         b"POST /rw/panel/ctrlstate?action=setctrlstate HTTP/1.1\r\n\r\nctrl-state=motoroff",
         b"POST /rw/rapid/execution?action=stop HTTP/1.1\r\nAuthorization: Digest username=user\r\n\r\nstopmode=stop",
     )
