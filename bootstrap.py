@@ -3,7 +3,7 @@
 
 python3 bootstrap.py demo              the demo cell with its dashboard
 python3 bootstrap.py demo --headless   the demo behavior once, no browser
-python3 bootstrap.py test              what must pass before a change lands; of the costly tests a fifth, by commit
+python3 bootstrap.py test              what must pass before a change lands; of the costly tests a sixth, by commit
 python3 bootstrap.py test --all        all tests; with options of pytest, what these choose of them
 python3 bootstrap.py test --fast       what needs no browser, process or physics: a few minutes
 python3 bootstrap.py lock [--upgrade]  requirements/*.lock for what pyproject.toml asks for
@@ -64,7 +64,7 @@ PYTEST = ["-m", "pytest", "-n", "2", "--dist", "worksteal", "-q", "--cpu"]
 # For the table that `--cpu` prints; tests/cpu_times.py.
 CPU_STAGES = "FLEXCELL_CPU_STAGES"
 # Docs and decision: docs/decisions/0079-costly-tests-take-turns.md
-TURNS = 5
+TURNS = 6
 # The first has no windows of its own, whose pages cost as much as the one that is tested.
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
