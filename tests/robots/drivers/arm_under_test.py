@@ -133,7 +133,8 @@ async def arm_under_test(kind: str, emulators: Emulators, *, series: str = "cb3"
         async with SimWorld(scene, host=ProcessHost(scene)) as world:
             arm = ArmUnderTest(
                 port=world.arm("arm"),
-                push=lambda force_n: world.push("arm/tool0", force_n=force_n, duration_s=2.0),
+                # For longer than a motion and its settling: an arm that is let go swings back.
+                push=lambda force_n: world.push("arm/tool0", force_n=force_n, duration_s=3.0),
             )
             await arm.move(START)
             yield arm

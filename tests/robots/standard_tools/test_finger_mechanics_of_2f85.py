@@ -66,7 +66,7 @@ async def test_a_part_is_lifted_held_without_slip_and_placed() -> None:
         assert (await close(reach, force_n=60.0)).end is MotionEnd.REACHED
         sample = gripped(reach)
         assert sample.contacts == ("part", "part")
-        assert sample.force_n == pytest.approx(60.0, abs=1.0)
+        assert sample.force_n == pytest.approx(60.0, rel=0.02)
         assert sample.width_m == pytest.approx(0.06, abs=0.0006)
 
         assert (await lift(reach)).end is MotionEnd.REACHED
