@@ -58,19 +58,26 @@ root:
 
 
 @pytest.fixture(scope="module")
-def emulator() -> Generator[EmulatedIrc5]:
+def started() -> Generator[EmulatedIrc5]:
     """The emulator of this file."""
-    with emulated(signals=SIGNALS) as started:
-        yield started
+    with emulated(signals=SIGNALS) as controller:
+        yield controller
+
+
+@pytest.fixture
+def emulator(started: EmulatedIrc5) -> EmulatedIrc5:
+    """The emulator without faults; all signals are off and there."""
+    started.do("restore")
+    for name in ("diDoor", "diPart"):
+        started.do("signal", name=name, on=False, valid=True)
+    return started
 
 
 @asynccontextmanager
 async def reading(
     emulator: EmulatedIrc5, *signals: str, stale_s: float = 10.0
 ) -> AsyncGenerator[tuple[AbbConnection, InputPort]]:
-    """The driver with these signals as inputs; all are off and there."""
-    for name in ("diDoor", "diPart"):
-        emulator.do("signal", name=name, on=False, valid=True)
+    """The driver with these signals as inputs."""
     rws = {"port": emulator.place["rws_port"], "timeout_s": 5.0, "stale_s": stale_s, "inputs": signals}
     async with connected(emulator, enable=False, rws=rws) as connection:
         inputs = connection.inputs
@@ -163,9 +170,8 @@ def test_the_check_knows_how_many_there_are_also_while_the_arm_is_simulated(
 def test_a_behavior_reads_signals_by_the_names_of_the_cell(
     emulator: EmulatedIrc5, tmp_path: Path, signals: dict[str, dict[str, bool]], outcome: str
 ) -> None:
-    emulator.do("restore")
     for name, values in signals.items():
-        emulator.do("signal", name=name, **{"on": False, "valid": True, **values})
+        emulator.do("signal", name=name, **values)
     written(tmp_path, emulator)
     (tmp_path / "door.yaml").write_text(BEHAVIOR, encoding="utf-8")
     command = [FLEXCELL, "run", "door.yaml"]
@@ -174,9 +180,7 @@ def test_a_behavior_reads_signals_by_the_names_of_the_cell(
 
 
 async def test_the_topic_has_the_names_of_the_cell(emulator: EmulatedIrc5, tmp_path: Path) -> None:
-    emulator.do("restore")
-    emulator.do("signal", name="diDoor", on=True, valid=True)
-    emulator.do("signal", name="diPart", on=False, valid=True)
+    emulator.do("signal", name="diDoor", on=True)
     async with OpenCell(load_cell(written(tmp_path, emulator)), store_path=str(tmp_path / "store.db")) as cell:
         latest = cell.bus.topic(f"{ARM}/digital_inputs", DigitalInputs).latest
         assert latest == DigitalInputs(values=(True, False), names={"door_closed": 0, "part_present": 1})
@@ -185,7 +189,6 @@ async def test_the_topic_has_the_names_of_the_cell(emulator: EmulatedIrc5, tmp_p
 async def test_a_name_beyond_the_signals_is_refused_with_how_many_there_are(
     emulator: EmulatedIrc5, tmp_path: Path
 ) -> None:
-    emulator.do("restore")
     with pytest.raises(FlexcellError, match="arm has no input 2 for part_present") as refused:
         async with OpenCell(load_cell(written(tmp_path, emulator, part=2)), store_path=str(tmp_path / "store.db")):
             pass
