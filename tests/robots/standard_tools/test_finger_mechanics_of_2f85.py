@@ -18,6 +18,11 @@ PART: Vector3 = (0.7, 0.1, 0.13)
 GRASP: Quaternion = (0.70710678, -0.70710678, 0.0, 0.0)
 
 
+BESIDES_N = 1.5
+"""What presses besides the drive: the weight of the fingers, since the drive does not know how the gripper is held, and the
+friction of the part on the table, along which the finger that comes first pushes it."""
+
+
 def cell(size_m: Vector3 = (0.06, 0.05, 0.06), *, mass_kg: float = 0.5) -> SimScene:
     """A box on a table."""
     pose = Pose(xyz=(PART[0], PART[1], 0.1 + size_m[2] / 2))
@@ -66,7 +71,7 @@ async def test_a_part_is_lifted_held_without_slip_and_placed() -> None:
         assert (await close(reach, force_n=60.0)).end is MotionEnd.REACHED
         sample = gripped(reach)
         assert sample.contacts == ("part", "part")
-        assert sample.force_n == pytest.approx(60.0, rel=0.02)
+        assert sample.force_n == pytest.approx(60.0, abs=BESIDES_N)
         assert sample.width_m == pytest.approx(0.06, abs=0.0006)
 
         assert (await lift(reach)).end is MotionEnd.REACHED
@@ -88,8 +93,7 @@ async def test_the_force_is_what_was_asked_for_within_the_grippers_range(asked_n
     async with reaching(cell()) as reach:
         await reach_for(reach)
         await close(reach, force_n=asked_n)
-        # The weight of the fingers presses too: the drive does not know how the gripper is held.
-        assert gripped(reach).force_n == pytest.approx(pressed_n, rel=0.02, abs=0.8)
+        assert gripped(reach).force_n == pytest.approx(pressed_n, rel=0.02, abs=BESIDES_N)
 
 
 @pytest.mark.virtual
