@@ -19,8 +19,8 @@ GRASP: Quaternion = (0.70710678, -0.70710678, 0.0, 0.0)
 
 
 BESIDES_N = 1.5
-"""What presses besides the drive: the weight of the fingers, since the drive does not know how the gripper is held, and the
-friction of the part on the table, along which the finger that comes first pushes it."""
+"""What presses besides the drive: the weight of the fingers, since the drive does not know how the gripper is held, and
+the friction of the part on the table, along which the finger that comes first pushes it."""
 
 
 def cell(size_m: Vector3 = (0.06, 0.05, 0.06), *, mass_kg: float = 0.5) -> SimScene:
