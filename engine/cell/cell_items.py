@@ -6,6 +6,7 @@ module by their names in the cell: `fixtures/vice/jaws`.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import Literal
 import msgspec
 
 from engine.cell.robot_models import tool_kinds
-from engine.document.cell import Cell, CellDocument
+from engine.document.cell import Cell
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
 
@@ -60,7 +61,7 @@ class CellItems(msgspec.Struct, frozen=True, kw_only=True):
 def named_items(cell: Cell | None, *, topics: Iterable[str] = ()) -> Iterator[CellItem]:
     """Yield the items of an open cell without their lines, for which the document would have to be read again."""
     known = tuple(sorted(topics))
-    for item in _items(cell.document) if cell is not None else ():
+    for item in _items(cell) if cell is not None else ():
         yield msgspec.structs.replace(item, topics=_topics(item, known))
 
 
@@ -114,12 +115,12 @@ def _with_lines(item: CellItem, cell: Cell, text: _Text, modules: Mapping[str, _
     if section == "robots" or module not in modules or not key:
         return msgspec.structs.replace(item, **_excerpt(item.path.split("/"), text))
     found = _excerpt([section, key], modules[module])
-    # As the document of the cell names it.
-    file = f"{cell.document.modules[module].module.rstrip('/')}/{cell.modules[module].file.name}"
-    return msgspec.structs.replace(item, **found, file=file)
+    file = os.path.relpath(cell.modules[module].file, cell.file.parent)
+    return msgspec.structs.replace(item, **found, file=Path(file).as_posix())
 
 
-def _items(document: CellDocument) -> Iterator[CellItem]:
+def _items(cell: Cell) -> Iterator[CellItem]:
+    document = cell.document
     for name, robot in document.robots.items():
         path = f"robots/{name}"
         yield CellItem(path=path, kind="robot", name=name, model=robot.model)
@@ -131,8 +132,8 @@ def _items(document: CellDocument) -> Iterator[CellItem]:
         module = name.partition("/")[0]
         return f"modules/{module}" if module in document.modules else ""
 
-    for name, spec in document.modules.items():
-        yield CellItem(path=f"modules/{name}", kind="module", name=name, model=spec.module.rstrip("/").split("/")[-1])
+    for name, module in cell.modules.items():
+        yield CellItem(path=f"modules/{name}", kind="module", name=name, model=module.document.module)
     for name, fixture in document.fixtures.items():
         yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape, owner=owner(name))
     for name, part in document.parts.items():

@@ -173,3 +173,12 @@ def test_what_stands_on_a_module_belongs_to_it_and_has_the_lines_of_its_document
     assert not items_of_cell(cell, name="bench").changed
     (folder / "module.yaml").write_text(MODULE.replace("0.3", "0.4"), encoding="utf-8")
     assert items_of_cell(cell, name="bench").changed
+
+
+def test_a_module_that_is_named_by_its_file_is_called_as_its_document_says(tmp_path: Path) -> None:
+    (tmp_path / "racks").mkdir()
+    (tmp_path / "racks" / "small.yaml").write_text(MODULE, encoding="utf-8")
+    (tmp_path / "cell.yaml").write_text(CELL + DOCKED.replace("racks/rack/", "racks/small.yaml"), encoding="utf-8")
+    found = items(load_cell(tmp_path / "cell.yaml"))
+    assert found["modules/store"].model == "rack"
+    assert found["parts/store/block"].file == "racks/small.yaml"
