@@ -202,7 +202,7 @@ class JogGuard:
             self._recheck.clear()
             commanded, begun_s, reaction_s = self._commanded, clock.now_s(), self._reaction_s
             is_waiting = self._is_at_rest
-            fastest, reason, pair = await self._check(commanded, reaction_s)
+            fastest, reason, pair = await self._check(commanded, begun_s=begun_s, reaction_s=reaction_s)
             self._cycles_s.append(clock.now_s() - min(before_s, begun_s))
             before_s = begun_s
             if reason and not self.held_by:
@@ -260,9 +260,10 @@ class JogGuard:
             recheck.cancel()
             await asyncio.wait((search, recheck))
 
-    async def _check(self, commanded: Array, reaction_s: float) -> tuple[float, str, NamePair | None]:
+    async def _check(
+        self, commanded: Array, *, begun_s: float, reaction_s: float
+    ) -> tuple[float, str, NamePair | None]:
         """Return the speed limit in the direction of `commanded`, the reason for it, and the pair that would touch."""
-        begun_s = self._runner.clock.now_s()
         ahead = self._ahead(commanded, reaction_s)
         path = ahead.trajectory
         found = await predict_collision(self._workspace, self._first_contact(path))
