@@ -48,7 +48,9 @@ HOSTILE_PATHS = (
 _document = api().openapi()
 # Those that count as a refusal of what breaks the schema: 431 is that of an address that is too long to be read.
 _REFUSALS = ["400", "401", "403", "404", "405", "406", "409", "415", "422", "428", "429", "431", "5xx"]
-_config = SchemathesisConfig.from_dict({"checks": {"negative_data_rejection": {"expected-statuses": _REFUSALS}}})
+_config = cast("Any", SchemathesisConfig).from_dict(
+    {"checks": {"negative_data_rejection": {"expected-statuses": _REFUSALS}}}
+)
 _schema = cast("Any", schemathesis.openapi.from_dict(_document, config=_config))
 fuzzed = settings(
     max_examples=EXAMPLES,
