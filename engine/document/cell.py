@@ -79,6 +79,14 @@ class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag=
     ] = 180.0
 
 
+class BusLimits(StrictModel, frozen=True, kw_only=True):
+    """Limits of the skill bus."""
+
+    service_timeout_s: (
+        Annotated[float, Meta(gt=0.0, description="Seconds within which services answer; others have failed")] | None
+    ) = None
+
+
 TopicName = Annotated[
     str, Meta(pattern="^[a-z][a-z0-9_]*(/[a-z0-9_]+)+$", max_length=128, description="Such as `operator/key`")
 ]
@@ -91,6 +99,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     cell: Name
     description: str = ""
     store: SqliteStoreSpec | MongoStoreSpec | None = None
+    bus: BusLimits = BusLimits()
     world: MujocoWorld | None = None
     robots: dict[Name, RobotSpec] = {}
     fixtures: dict[Name, Fixture] = {}
@@ -244,8 +253,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     return Cell(document=document.in_world(), file=file, source=source, modules=modules)
 
 
-_LATER = "remove it"
-_REFUSED = {"bus": _LATER, "calibration": _LATER}
+_REFUSED = {"calibration": "give it to the robot: `robots: {NAME: {calibration: FILE}}`"}
 
 
 # A password between `:` and `@` that is not an environment variable.

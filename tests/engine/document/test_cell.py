@@ -86,7 +86,8 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "must_cover",
         "regions must be covered, but the cell has no camera",
     ),
-    "bus": ("parts:", "bus: {}\nparts:", "bus", "this version does not support `bus`"),
+    "calibration of a cell": ("parts:", "calibration: a.yaml\nparts:", "calibration", "give it to the robot"),
+    "no time for services": ("parts:", "bus: {service_timeout_s: 0}\nparts:", "0}", "> 0"),
 }
 
 
