@@ -17,8 +17,15 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
-from engine.document.cell_frames import FrameSpec, poses_in_world, require_frames
-from engine.document.cell_modules import ModuleSpec, docked, load_modules, with_positions
+from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
+from engine.document.cell_modules import (
+    ModuleSpec,
+    docked,
+    load_modules,
+    module_below,
+    require_plugged,
+    with_positions,
+)
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
@@ -155,7 +162,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
         parts, cameras = dict(self.parts), dict(self.cameras)
         for name, module in modules.items():
-            added = docked(name, module.document, connector=self.modules[name].connector)
+            added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
             frames |= added.frames
             fixtures |= added.fixtures
             parts |= added.parts
@@ -190,10 +197,12 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 class Cell(DocumentFile[CellDocument]):
     """A cell document with its file, and with everything that stands on its modules.
 
-    `modules` are their documents. `simulated` are devices whose drivers the simulation replaces, with these.
+    `modules` are their documents; `carried` says, by module, what of the cell document itself stands on it and is no
+    part: `robot arm`. `simulated` are devices whose drivers the simulation replaces, with these.
     """
 
     modules: Mapping[str, Module] = field(default_factory=dict[str, Module])
+    carried: Mapping[str, str] = field(default_factory=dict[str, str])
     simulated: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
@@ -232,7 +241,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     Raises:
         DocumentError: as `load_cell`.
     """
-    document = decode_document(source, CellDocument, refused=_REFUSED)
+    document = written = decode_document(source, CellDocument, refused=_REFUSED)
     modules: dict[str, Module] = {}
     if document.modules or document.connectors:
         _require_free_names(document, source)
@@ -250,7 +259,23 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
-    return Cell(document=document.in_world(), file=file, source=source, modules=modules)
+    carried = _standing_on_modules(written, document, source, modules) if modules else {}
+    return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried)
+
+
+def _standing_on_modules(
+    written: CellDocument, joined: CellDocument, source: DocumentSource, modules: Mapping[str, Module]
+) -> dict[str, str]:
+    """Return what of the cell document stands on each module, without parts."""
+    fixtures = [(("fixtures", name, "at", "frame"), one.at.frame) for name, one in written.fixtures.items()]
+    uses: list[tuple[DataPath, str]] = [*written.uses_of_frames(), *fixtures]
+    frames: dict[str, str] = {"world": ""}
+    for _, frame in (*uses, *(((), name) for name in written.connectors)):
+        frames[frame] = module_below(frame, modules=modules, frames=joined.frames, fixtures=joined.fixtures)
+    standing = [(path, frames[frame]) for path, frame in uses if frames[frame]]
+    below = {name: frames[name] for name in written.connectors if frames[name]}
+    require_plugged(written.modules, modules, source, standing=standing, below=below)
+    return {module: f"{str(path[0])[:-1]} {path[1]}" for path, module in standing if path[0] != "parts"}
 
 
 _REFUSED = {"calibration": "give it to the robot: `robots: {NAME: {calibration: FILE}}`"}
