@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from robots.control.arm_control_loop import ArmControlLoop
@@ -52,7 +54,8 @@ class Simulation:
 
     def __init__(self, cell: CellModel) -> None:
         self._cell = cell
-        self._physics = physics = Physics(cell.model)
+        # Modules change the model; a built cell is only read.
+        self._physics = physics = Physics(copy(cell.model) if cell.scene.modules else cell.model)
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities

@@ -37,6 +37,9 @@ class PhysicsCopy:
             modules_size=POSE_FIELDS * len(self._modules),
         )
         self._physics, self._poses = layout.physics, layout.modules
+        self._last_poses: Array = np.zeros(0)
+        self.still_version = 0
+        """Increases whenever what cannot move by itself stands elsewhere: modules come and go."""
         for module, bodies in zip(self._modules, scene.modules, strict=True):
             self._put(module, RigidTransform.from_pose(bodies.at) if bodies.plugged else None)
         mujoco.mj_kinematics(self.model, self.data)
@@ -51,8 +54,12 @@ class PhysicsCopy:
         """Set the state of `image`, from `WorldHost.image`; raises CellError if it is not of this world."""
         if len(image) < self._poses.stop or not np.isfinite(image[self._physics]).all():
             raise CellError(f"{len(image)} numbers are not a state of this world", where="cameras")
-        for module, numbers in zip(self._modules, image[self._poses].reshape(-1, POSE_FIELDS), strict=True):
-            self._put(module, read_pose(numbers))
+        poses = image[self._poses]
+        if not np.array_equal(poses, self._last_poses):
+            self._last_poses = poses.copy()
+            self.still_version += 1
+            for module, numbers in zip(self._modules, poses.reshape(-1, POSE_FIELDS), strict=True):
+                self._put(module, read_pose(numbers))
         mujoco.mj_setState(self.model, self.data, np.ascontiguousarray(image[self._physics]), self._kind)
         mujoco.mj_kinematics(self.model, self.data)
 
