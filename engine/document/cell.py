@@ -272,10 +272,10 @@ def _standing_on_modules(
     frames: dict[str, str] = {"world": ""}
     for _, frame in (*uses, *(((), name) for name in written.connectors)):
         frames[frame] = module_below(frame, modules=modules, frames=joined.frames, fixtures=joined.fixtures)
-    standing = [(path, frames[frame]) for path, frame in uses if frames[frame]]
+    resting = [(path, frames[frame]) for path, frame in uses if frames[frame]]
     below = {name: frames[name] for name in written.connectors if frames[name]}
-    require_plugged(written.modules, modules, source, standing=standing, below=below)
-    return {module: f"{str(path[0])[:-1]} {path[1]}" for path, module in standing if path[0] != "parts"}
+    require_plugged(written.modules, modules, source, resting=resting, below=below)
+    return {module: f"{str(path[0])[:-1]} {path[1]}" for path, module in resting if path[0] != "parts"}
 
 
 _REFUSED = {"calibration": "give it to the robot: `robots: {NAME: {calibration: FILE}}`"}

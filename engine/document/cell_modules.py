@@ -144,7 +144,7 @@ def require_plugged(
     loaded: Mapping[str, Module],
     source: DocumentSource,
     *,
-    standing: Iterable[tuple[DataPath, str]],
+    resting: Iterable[tuple[DataPath, str]],
     below: Mapping[str, str],
 ) -> None:
     """Require that nothing of the cell stands on a module that is not plugged when the cell is opened.
@@ -153,7 +153,7 @@ def require_plugged(
         modules: The modules.
         loaded: Their documents.
         source: The document of the cell.
-        standing: What of the cell stands on modules, each by its path with the module.
+        resting: What of the cell stands on modules, each by its path with the module.
         below: The module below each connector that is on a module.
 
     Raises:
@@ -173,7 +173,7 @@ def require_plugged(
         for name, spec in modules.items()
         if spec.plugged and spec.connector is not None and spec.connector in below
     ]
-    for path, module in (*docked_on, *standing):
+    for path, module in (*docked_on, *resting):
         if module in waiting:
             raise DocumentError(
                 f"`{path[1]}` stands on module `{module}`, which is not plugged when the cell is opened",

@@ -13,7 +13,7 @@ from states.cell.module_name import ModuleName
 class UnplugModule(State, frozen=True, kw_only=True):
     """Unplug a module: it leaves the cell with the parts that are on it.
 
-    Its parts that are elsewhere stay in the cell. It fails while an arm, a person or a part of others touches the module.
+    Its parts that are elsewhere stay in the cell. It fails while an arm, a person or another part touches the module.
     """
 
     state_name: ClassVar[str] = "cell.UnplugModule"

@@ -10,7 +10,7 @@ import viser
 
 from editor_web.cell_view.layers.contact_highlight import bodies_in_contact
 from editor_web.cell_view.rendering.canvas import CELL, Canvas
-from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry, colour_of, corners
+from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry, body_name, colour_of, corners
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
 from editor_web.cell_view.rendering.transforms import WorldPose, is_visible_change, poses_by_frame
@@ -85,9 +85,9 @@ class BodyLayer:
                 # One invalid shape must not hide the rest of the cell.
                 _log.warning("%s is not drawn: %s", geometry.name, error)
                 continue
-            # A link of an arm is identified by its frame; a fixture with several bodies has `name/0`, `name/1`.
+            # A link of an arm is identified by its frame.
             is_link = geometry.frame.partition("/")[0] in self._arms
-            name = geometry.frame if is_link else geometry.name.partition("/")[0]
+            name = geometry.frame if is_link else body_name(geometry)
             self._shapes.append((name, shape, colour_of(geometry)))
         self._add_axes(latest, known)
 

@@ -12,8 +12,7 @@ from engine.document.docking import cell_as_docked, cell_at_start, docks_at_star
 from engine.errors import DocumentError
 from tests.engine.document.test_cell_modules import CELL, MODULE, written
 
-LATER = CELL.replace("connector: dock_b}", "connector: dock_b, plugged: false}")
-LATER = LATER.replace("gauge: {parent: right/slot}", "gauge: {}")
+LATER = CELL.replace("connector: dock_b}", "connector: dock_b, plugged: false}").replace(
     "gauge: {parent: right/slot}", "gauge: {}"
 )
 NO_CAMERA = MODULE[: MODULE.index("cameras:")]
