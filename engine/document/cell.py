@@ -259,11 +259,11 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
-    carried = _standing_on_modules(written, document, source, modules) if modules else {}
+    carried = _items_on_modules(written, document, source, modules) if modules else {}
     return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried)
 
 
-def _standing_on_modules(
+def _items_on_modules(
     written: CellDocument, joined: CellDocument, source: DocumentSource, modules: Mapping[str, Module]
 ) -> dict[str, str]:
     """Return what of the cell document stands on each module, without parts."""

@@ -6,8 +6,7 @@ from collections.abc import Collection
 
 from msgspec.structs import replace
 
-from engine.document import Cell, CellDocument
-from engine.document.docking import docks_at_start
+from engine.document import Cell, CellDocument, docks_at_start
 from robots.scene.sim_scene import ModuleBodies, SimScene
 
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from engine.cell.drivers import AssignedDriver, Emulator, EmulatorOptions, Ready, assigned_drivers, emulator
-from engine.document import load_cell, with_simulated_devices
-from engine.document.docking import cell_at_start
+from engine.document import cell_at_start, load_cell, with_simulated_devices
 from engine.errors import FlexcellError
 from robots.drivers.cell_emulation.cell_emulator import CellEmulatorOptions
 from robots.drivers.cell_emulation.serve_franka_cell import has_franka, serve_franka_cell

@@ -132,11 +132,11 @@ class DockedModules:
         others: dict[int, float] = {}
         while bodies:
             near = self._physics.near(bodies, within_m=_TOUCHING_M)
-            leaving = own.keys() & near.keys()
-            others = {body: gap_m for body, gap_m in near.items() if body not in leaving and body not in self._fixed}
-            if not leaving:
+            going = own.keys() & near.keys()
+            others = {body: gap_m for body, gap_m in near.items() if body not in going and body not in self._fixed}
+            if not going:
                 break
-            bodies |= leaving
+            bodies |= going
         if others:
             return f"{self._named(others)} touches it"
         parts = tuple(part for body, part in own.items() if body in bodies)

@@ -12,8 +12,8 @@ class ImageLayout:
     """Where each quantity lies in an image.
 
     First the step count, then the physics state from MuJoCo, then where modules are, as in
-    `robots.sim.loop.docked_modules`, then for each arm its set point and reflex (1 or 0), and for each tool its command,
-    as in `robots.sim.grip.mechanics.ToolMechanics`; last the motions and contacts of people, as in
+    `robots.sim.loop.docked_modules`, then for each arm its set point and reflex (1 or 0), and for each tool its
+    command, as in `robots.sim.grip.mechanics.ToolMechanics`; last the motions and contacts of people, as in
     `robots.sim.people.people_loop`.
     """
 

@@ -22,7 +22,7 @@ PlaceBody = Callable[[int, Array, Array], None]
 
 
 def away(body: int) -> RigidTransform:
-    """Return where a body is that is not in the cell: out of sight, and touching nothing."""
+    """Return where a body is that is not in the cell: far from all cameras, and touching nothing."""
     return RigidTransform(xyz=np.array([_AWAY_M + _APART_M * body, 0.0, -_AWAY_M]), xyzw=np.array([0.0, 0.0, 0.0, 1.0]))
 
 

@@ -6,8 +6,7 @@ import asyncio
 from collections.abc import Callable, Collection, Mapping
 
 from engine.bus import SkillBus, Topic
-from engine.document import Cell
-from engine.document.docking import cell_as_docked, docks_at_start, modules_below
+from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
 from engine.errors import SkillFailed
 from engine.messages import Pose
 from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugModule, UnplugModule
