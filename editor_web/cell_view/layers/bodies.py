@@ -26,10 +26,10 @@ _AXES_M = 0.12
 _TOUCHING: Rgb = (220, 38, 38)
 
 
-def body_node(frame: str, arms: frozenset[str], *, under: str = "") -> str:
-    """Return the scene node of a frame. Bodies that belong neither to an arm nor to the cell itself are people."""
+def body_node(frame: str, arms: frozenset[str], *, parts: frozenset[str] = frozenset(), under: str = "") -> str:
+    """Return the scene node of a frame. Bodies that belong to no arm, and are no `parts` of a module, are people."""
     owner, slash, _ = frame.partition("/")
-    is_person = bool(arms and slash) and owner not in arms
+    is_person = bool(arms and slash) and owner not in arms and frame not in parts
     # A slash would nest the frame below another one, but all poses are in the world frame.
     return f"{root_of('people', under=under) if is_person else under + CELL}/{frame.replace('/', '.')}"
 
@@ -45,6 +45,7 @@ class BodyLayer:
         self._under = under
         self._scene: SceneDescription | None = None
         self._arms: frozenset[str] = frozenset()
+        self._parts: frozenset[str] = frozenset()
         self._poses: FramePoses | None = None
         self._frames: dict[str, list[viser.FrameHandle]] = {}
         self._drawn: dict[str, WorldPose] = {}
@@ -70,6 +71,8 @@ class BodyLayer:
 
     def _build(self, scene: SceneDescription, latest: LatestMessages) -> None:
         known = poses_by_frame(latest.frames)
+        # The one body of a part has the name of its frame.
+        self._parts = frozenset(each.frame for each in scene.geometries if each.name == each.frame)
         for handle in (each for of_name in self._frames.values() for each in of_name):
             handle.remove()
         self._frames, self._drawn, self._shapes = {}, {}, []
@@ -102,7 +105,7 @@ class BodyLayer:
                     shape.color = _TOUCHING if name in names else own
 
     def _node(self, frame: str) -> str:
-        return body_node(frame, self._arms, under=self._under)
+        return body_node(frame, self._arms, parts=self._parts, under=self._under)
 
     def _add_axes(self, latest: LatestMessages, known: Mapping[str, WorldPose]) -> None:
         """Show the frames of the world, the tools and the parts."""
