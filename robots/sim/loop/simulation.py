@@ -110,7 +110,7 @@ class Simulation:
             modules_size=self._modules.image_size,
             people_size=self._people.image_size,
         )
-        self.summary = _summary(cell, arms, model=model, image_size=self.image_layout.size)
+        self.summary = _summary(cell, arms, model=model, image=self.image_layout)
         self.layout = SnapshotLayout(self.summary)
 
     @property
@@ -290,7 +290,7 @@ def _arm_summaries(cell: CellModel) -> tuple[ArmSummary, ...]:
     )
 
 
-def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image_size: int) -> CellSummary:
+def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image: ImageLayout) -> CellSummary:
     return CellSummary(
         step_s=cell.scene.step_s,
         arms=arms,
@@ -298,6 +298,7 @@ def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image
         parts=cell.parts,
         bodies=cell.body_names,
         model=model,
-        image_size=image_size,
+        image_size=image.size,
+        modules_at=image.modules.start,
         people=tuple(person.name for person in cell.people),
     )

@@ -7,14 +7,20 @@ from collections.abc import Callable, Collection, Mapping
 
 from engine.bus import SkillBus, Topic
 from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
-from engine.errors import SkillFailed
+from engine.errors import RobotError, SkillFailed
 from engine.messages import Pose
 from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugModule, UnplugModule
 from engine.wording import did_you_mean
+from robots.model.transform import RigidTransform
+from robots.port import Array
 from robots.scene.docked_scene import docked_scene
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import ModulePlaced, PlaceModule
 from robots.sim.host.world_host import WorldHost
+from robots.sim.physics.module_fixtures import POSE_FIELDS, read_pose
+
+# Poses that are so near, in metres and radians, are those of one connector.
+_SAME = 1e-6
 
 SceneListener = Callable[[SimScene], None]
 """Takes what is in the world now; called on the event loop, before the request that changed it returns."""
@@ -37,7 +43,8 @@ class ModuleServices:
         self._cell = cell if cell is not None and cell.modules else None
         self._listeners: list[SceneListener] = []
         self._topic: Topic[CellModules] | None = None
-        self._changing = asyncio.Lock()
+        self.changing = asyncio.Lock()
+        """Held while the world changes what is in it, or is restored."""
         self.docks: dict[str, str] = {}
         """The connector of each plugged module."""
         self.away: frozenset[str] = frozenset()
@@ -58,9 +65,25 @@ class ModuleServices:
         """Take the state of a world that was built anew."""
         if self._cell is not None:
             docks = docks_at_start(self._cell)
-            self.take_over(docks, self._parts_of_others(docks))
+            self._take_over(docks, self._parts_of_others(docks))
 
-    def take_over(self, docks: Mapping[str, str], away: Collection[str]) -> None:
+    def take_image(self, image: Array) -> None:
+        """Take the state of a world that was restored to an image.
+
+        Raises:
+            RobotError: a module stands at no connector of the cell.
+        """
+        if self._cell is None:
+            return
+        modules = self._whole.modules
+        parts = [part for module in modules for part in module.parts]
+        start, count = self._host.summary.modules_at, len(modules) + len(parts)
+        rows = image[start : start + POSE_FIELDS * count].reshape(-1, POSE_FIELDS)
+        poses = {module.name: read_pose(row) for module, row in zip(modules, rows, strict=False)}
+        away = [part for part, row in zip(parts, rows[len(modules) :], strict=True) if row[0]]
+        self._take_over(self._docks_at({name: pose for name, pose in poses.items() if pose is not None}), away)
+
+    def _take_over(self, docks: Mapping[str, str], away: Collection[str]) -> None:
         """Take the state of a world that was changed or restored, and tell everybody."""
         if self._cell is None:
             return
@@ -78,7 +101,7 @@ class ModuleServices:
         """Take note that all parts of modules are on their modules again."""
         gone = self._parts_of_others(self.docks)
         if gone != self.away:
-            self.take_over(self.docks, gone)
+            self._take_over(self.docks, gone)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the services of each module under its name, and publish the state of all."""
@@ -109,7 +132,7 @@ class ModuleServices:
             SkillFailed: it cannot be plugged there; nothing has changed.
             RobotError: the world is lost.
         """
-        async with self._changing:
+        async with self.changing:
             cell = self._of(name)
             where = self._free_connector(cell, name, connector)
             docks = {**self.docks, name: where}
@@ -128,7 +151,7 @@ class ModuleServices:
             SkillFailed: it cannot be unplugged; nothing has changed.
             RobotError: the world is lost.
         """
-        async with self._changing:
+        async with self.changing:
             cell = self._of(name)
             if name not in self.docks:
                 raise self._refused(f"{name} is not plugged", hint=f"plugged are {', '.join(self.docks) or 'none'}")
@@ -140,6 +163,25 @@ class ModuleServices:
                     f"{name} cannot be unplugged: {placed.refused}", hint="take it away first, then unplug the module"
                 )
             return self._took(name, docks, placed)
+
+    def _docks_at(self, poses: Mapping[str, RigidTransform]) -> dict[str, str]:
+        """Return the connectors of modules that stand at these poses; connectors may be on other modules."""
+        cell, docks = self._cell, dict[str, str]()
+        assert cell is not None
+        while len(docks) < len(poses):
+            frames = cell_as_docked(cell, docks).fixed_frames
+            free = {name: RigidTransform.from_pose(frames[name]) for name in self._free(cell, docks)}
+            found = {
+                module: name
+                for module, pose in poses.items()
+                for name, place in free.items()
+                if module not in docks and place.distance_m(pose) < _SAME and place.angle_rad(pose) < _SAME
+            }
+            if not found:
+                lost = next(name for name in poses if name not in docks)
+                raise RobotError(f"{lost} stands at no connector", where=self._world, hint="connect the cell anew")
+            docks |= found
+        return docks
 
     def _parts_of_others(self, docks: Mapping[str, str]) -> frozenset[str]:
         """Return the parts of the modules that are not plugged."""
@@ -162,7 +204,7 @@ class ModuleServices:
         if name in self.docks:
             raise self._refused(f"{name} is plugged to {self.docks[name]} already", hint="unplug it first")
         where = connector or cell.document.modules[name].connector
-        free = self._free(cell)
+        free = self._free(cell, self.docks)
         if not where:
             raise self._refused(
                 f"{name} has no connector in the cell document", hint=f"name one of {', '.join(free) or 'none'}"
@@ -193,7 +235,7 @@ class ModuleServices:
             raise self._refused(f"{name} cannot be unplugged: {upper} is plugged to it", hint=f"unplug {upper} first")
 
     def _took(self, name: str, docks: Mapping[str, str], placed: ModulePlaced) -> ModuleState:
-        self.take_over(docks, placed.away)
+        self._take_over(docks, placed.away)
         return next(each for each in self._state().modules if each.module == name)
 
     def _state(self) -> CellModules:
@@ -210,15 +252,15 @@ class ModuleServices:
                 )
                 for name, module in cell.modules.items()
             ),
-            free=self._free(cell),
+            free=self._free(cell, self.docks),
         )
 
-    def _free(self, cell: Cell) -> tuple[str, ...]:
-        below, taken = modules_below(cell), set(self.docks.values())
+    def _free(self, cell: Cell, docks: Mapping[str, str]) -> tuple[str, ...]:
+        below, taken = modules_below(cell), set(docks.values())
         return tuple(
             name
             for name in cell.document.connectors
-            if name not in taken and (name not in below or below[name] in self.docks)
+            if name not in taken and (name not in below or below[name] in docks)
         )
 
     def _refused(self, message: str, *, hint: str) -> SkillFailed:

@@ -10,8 +10,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self, cast
 
-from msgspec.structs import replace
-
 from engine.bus import SkillBus
 from engine.clock import VirtualLoop
 from engine.document import Cell
@@ -181,7 +179,6 @@ class SimWorld:
         }
         inputs = {name: port.values for name, port in self._inputs.items()}
         image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs, memos, inputs)
-        image = replace(image, docks=self.modules.docks, away=tuple(sorted(self.modules.away)))
         return encode_snapshot(image, model=self._host.summary.model)
 
     async def restore(self, snapshot: bytes) -> None:
@@ -205,11 +202,12 @@ class SimWorld:
         try:
             for name, settings in image.settings.items():
                 self._arm_ports[name].configure(settings)
-            await self._host.restore(image.array())
+            async with self.modules.changing:
+                await self._host.restore(image.array())
+                self.modules.take_image(image.array())
             self._board.reflexes = dict(image.reflexes)
         finally:
             self._board.closed_reason = ""
-        self.modules.take_over(image.docks, image.away)
         for ports, values in ((self._outputs, image.outputs), (self._inputs, image.inputs)):
             for name in values:
                 ports[name].recall(values[name])

@@ -25,9 +25,8 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     """A world at one instant.
 
     Its numbers as in `ImageLayout`, the grasp command of each gripper, the settings of each arm, the reasons of active
-    reflexes, and the digital outputs and inputs of arms that have some. `docks` has the connector of each plugged
-    module, `away` the parts that are on others. `memos` are the saved states of devices, by their names, in their own
-    encoding.
+    reflexes, and the digital outputs and inputs of arms that have some. `memos` are the saved states of devices, by
+    their names, in their own encoding.
     """
 
     numbers: bytes
@@ -37,8 +36,6 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     outputs: dict[str, tuple[bool, ...]]
     memos: dict[str, bytes] = {}
     inputs: dict[str, tuple[bool, ...]] = {}
-    docks: dict[str, str] = {}
-    away: tuple[str, ...] = ()
 
     @classmethod
     def of(

@@ -21,6 +21,7 @@ from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugM
 from engine.skills.motion import CartTrapVel, JointTrapVel
 from engine.skills.planning_scene import AttachPart, PlanningSceneState, ReadPlanningScene
 from engine.skills.simulated_world import ResetParts
+from robots.sim.commands.world_commands import PlaceModule
 from robots.sim.host.process_host import ProcessHost
 from robots.sim.world.sim_world import SimWorld
 from tests.robots.module_cell import CELL, MODULE, module_cell
@@ -202,6 +203,24 @@ async def test_a_reopened_cell_has_the_modules_of_its_snapshot(tmp_path: Path) -
         assert await obstacles(cell.bus) == {"table", "own", "full/tray", *AWAY}
         with pytest.raises(SkillFailed, match="full is plugged to dock_2"):
             await cell.bus.call(PlugModule(connector="dock_2"), to="other")
+
+
+@pytest.mark.virtual
+async def test_a_snapshot_from_the_middle_of_a_plug_has_what_physics_has(tmp_path: Path) -> None:
+    """The world's process may die after it has placed a module and before anybody heard of it."""
+    nested = CELL.replace("other: {module: bin, plugged: false}", "other: {module: bin, plugged: false}\n" + UPPER)
+    nested = nested.replace("modules:", "  on_top: {parent: full/slot_2, at: {xyz: [0, 0, 0.3]}}\nmodules:")
+    async with opened(module_cell(tmp_path, cell=nested)) as cell:
+        world = cell.world
+        assert isinstance(world, SimWorld)
+        await cell.bus.call(PlugModule(connector="dock_2"), to="full")
+        pose = next(pose for name, pose in world.modules.frames.items() if name == "on_top")
+        await world.host.place_module(PlaceModule(module="upper", pose=pose))
+        assert "upper/block" not in part_places(cell.bus)
+        await cell.restore(world.snapshot())
+        assert [each.connector for each in modules(cell.bus).modules] == ["dock_2", "", "on_top"]
+        assert {"upper/block", "upper/ball"} <= set(part_places(cell.bus))
+        assert "upper/tray" in await obstacles(cell.bus)
 
 
 @pytest.mark.virtual
