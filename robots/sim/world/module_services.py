@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Coroutine, Mapping
+from typing import Any
 
 from engine.bus import SkillBus, Topic
 from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
@@ -45,6 +46,7 @@ class ModuleServices:
         self._topic: Topic[CellModules] | None = None
         self.changing = asyncio.Lock()
         """Held while the world changes what is in it, or is restored."""
+        self._changes: set[asyncio.Task[ModuleState]] = set()
         self.docks: dict[str, str] = {}
         """The connector of each plugged module."""
         self.away: frozenset[str] = frozenset()
@@ -128,10 +130,35 @@ class ModuleServices:
     async def plug(self, name: str, connector: str = "") -> ModuleState:
         """Plug a module into a connector, the one of the cell document by default.
 
+        Once begun it is completed, also when the caller is cancelled: what is in the world is always known.
+
         Raises:
             SkillFailed: it cannot be plugged there; nothing has changed.
             RobotError: the world is lost.
         """
+        return await self._completed(self._plug(name, connector))
+
+    async def unplug(self, name: str) -> ModuleState:
+        """Unplug a module, with the parts on it; completed as `plug` is.
+
+        Raises:
+            SkillFailed: it cannot be unplugged; nothing has changed.
+            RobotError: the world is lost.
+        """
+        return await self._completed(self._unplug(name))
+
+    async def _completed(self, change: Coroutine[Any, Any, ModuleState]) -> ModuleState:
+        task = asyncio.create_task(change, name="changing the modules")
+        self._changes.add(task)
+        task.add_done_callback(self._changed)
+        return await asyncio.shield(task)
+
+    def _changed(self, task: asyncio.Task[ModuleState]) -> None:
+        self._changes.discard(task)
+        if not task.cancelled():
+            task.exception()  # the caller may be gone
+
+    async def _plug(self, name: str, connector: str) -> ModuleState:
         async with self.changing:
             cell = self._of(name)
             where = self._free_connector(cell, name, connector)
@@ -144,13 +171,7 @@ class ModuleServices:
                 )
             return self._took(name, docks, placed)
 
-    async def unplug(self, name: str) -> ModuleState:
-        """Unplug a module, with the parts on it.
-
-        Raises:
-            SkillFailed: it cannot be unplugged; nothing has changed.
-            RobotError: the world is lost.
-        """
+    async def _unplug(self, name: str) -> ModuleState:
         async with self.changing:
             cell = self._of(name)
             if name not in self.docks:

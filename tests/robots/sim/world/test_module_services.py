@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 from collections.abc import AsyncGenerator
@@ -13,6 +14,7 @@ import pytest
 from engine.bus import GoalStatus, SkillBus
 from engine.bus.lease import Holder
 from engine.cell.open_cell import OpenCell
+from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.errors import LeaseRefused, SkillFailed
 from engine.messages import FramePoses, JointState, PartPoses, Pose, SceneDescription
@@ -21,10 +23,11 @@ from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugM
 from engine.skills.motion import CartTrapVel, JointTrapVel
 from engine.skills.planning_scene import AttachPart, PlanningSceneState, ReadPlanningScene
 from engine.skills.simulated_world import ResetParts
-from robots.sim.commands.world_commands import PlaceModule
+from robots.sim.commands.world_commands import ModulePlaced, PlaceModule
+from robots.sim.host.lockstep_host import LockstepHost
 from robots.sim.host.process_host import ProcessHost
 from robots.sim.world.sim_world import SimWorld
-from tests.robots.module_cell import CELL, MODULE, module_cell
+from tests.robots.module_cell import CELL, MODULE, module_cell, module_scene
 
 AWAY = ("full/block", "full/ball")
 UPPER = """\
@@ -203,6 +206,31 @@ async def test_a_reopened_cell_has_the_modules_of_its_snapshot(tmp_path: Path) -
         assert await obstacles(cell.bus) == {"table", "own", "full/tray", *AWAY}
         with pytest.raises(SkillFailed, match="full is plugged to dock_2"):
             await cell.bus.call(PlugModule(connector="dock_2"), to="other")
+
+
+class SlowHost(LockstepHost):
+    """A world that has placed a module a while before it answers."""
+
+    async def place_module(self, command: PlaceModule) -> ModulePlaced:
+        placed = await super().place_module(command)
+        await asyncio.sleep(0.1)
+        return placed
+
+
+@pytest.mark.virtual
+async def test_a_plug_whose_caller_is_cancelled_is_known_all_the_same(tmp_path: Path) -> None:
+    cell = module_cell(tmp_path)
+    scene = module_scene(cell)
+    async with SimWorld(scene, host=SlowHost(scene), cell=cell) as world, SkillBus(new_clock()) as bus:
+        world.register(bus)
+        calling = asyncio.create_task(bus.call(PlugModule(), to="full"))
+        await asyncio.sleep(0.05)
+        calling.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await calling
+        assert await bus.call(PlugModule(connector="dock_2"), to="other") is not None
+        assert [each.connector for each in modules(bus).modules] == ["dock_1", "dock_2"]
+        assert {*AWAY, "other/block"} <= set(part_places(bus))
 
 
 @pytest.mark.virtual
