@@ -7,7 +7,6 @@ Lengths are in metres, angles in radians, masses in kilograms. Paths are relativ
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,6 +26,7 @@ from engine.document.cell_modules import (
     with_positions,
 )
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
+from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name, Placement
@@ -36,29 +36,6 @@ from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 from engine.messages import Pose
-
-
-class SqliteStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
-    """Named entries in a file; `seed` is an entries document with initial values of missing entries."""
-
-    path: Annotated[str, Meta(min_length=1, description="Database file, relative to the current directory")]
-    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
-
-
-class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
-    """Named entries on a MongoDB server; `seed` is an entries document with initial values of missing entries.
-
-    `${NAME}` in `uri` is replaced by an environment variable, for example the password.
-    """
-
-    uri: Annotated[
-        str, Meta(pattern=r"^(mongodb(\+srv)?://|\$\{)", description="For example `mongodb://127.0.0.1:27017`")
-    ]
-    database: Annotated[str, Meta(pattern="^[A-Za-z0-9_-]{1,63}$", description="Database name on the server")] = (
-        "flexcell"
-    )
-    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
-
 
 RealismName = Literal["ideal", "typical", "poor"]
 
@@ -248,7 +225,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
         connectors = document.connectors
         modules = load_modules(document.modules, connectors=connectors, source=source, folder=file.parent)
         document, source = document.with_modules(modules), with_positions(source, modules)
-    _require_no_secret(document, source)
+    require_no_secret(document.store, source)
     require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
     _require_drivers(document, source)
     _require_world(document, source)
@@ -279,20 +256,6 @@ def _items_on_modules(
 
 
 _REFUSED = {"calibration": "give it to the robot: `robots: {NAME: {calibration: FILE}}`"}
-
-
-# A password between `:` and `@` that is not an environment variable.
-_SECRET = re.compile(r"://[^@/:]*:(?!\$\{\w+\}@)[^@/]*@")
-
-
-def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
-    store = document.store
-    if isinstance(store, MongoStoreSpec) and _SECRET.search(store.uri):
-        raise DocumentError(
-            "the `uri` of the store contains a password",
-            where=source.position(("store", "uri")),
-            hint="write ${NAME} instead and set that environment variable: mongodb://user:${NAME}@host",
-        )
 
 
 def _require_free_names(document: CellDocument, source: DocumentSource) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.document import Placement, load_cell
-from engine.document.cell import MongoStoreSpec, SqliteStoreSpec
+from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec
 from engine.errors import DocumentError, Position
 
 DEMO = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
