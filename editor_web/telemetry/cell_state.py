@@ -1,4 +1,4 @@
-"""Where the parts, frames and cameras of a cell are now, and what its tools hold, from the latest messages."""
+"""Where the parts, frames, cameras and modules of a cell are now, and what its tools hold, from the latest messages."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from engine.messages.device_state import DeviceLink, DeviceState
 from engine.messages.sensing import CameraInfo
 from engine.messages.tool_hold import ToolHold
 from engine.project import BusInspector
+from engine.skills.modules import CellModules
 
 _DIGITS = 4
 
@@ -18,6 +19,7 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
     poses: dict[str, Pose] = {}
     cameras: dict[str, Pose] = {}
     tools: dict[str, ToolHolds] = {}
+    modules: dict[str, str] = {}
     states: dict[str, DeviceState] = {}
     links: dict[str, DeviceLink] = {}
     measured = {kind.measured.__name__ for kind in tool_kinds().values()}
@@ -41,13 +43,15 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
                     states[device] = message
                 case DeviceLink():
                     links[device] = message
+                case CellModules():
+                    modules = {each.module: each.connector for each in message.modules}
                 case _:
                     pass
     devices = {name: DeviceNow(state=state, link=links.get(name)) for name, state in states.items()}
-    return CellStateFrame(poses=poses, cameras=cameras, tools=tools, devices=devices)
+    return CellStateFrame(poses=poses, cameras=cameras, tools=tools, devices=devices, modules=modules)
 
 
-_KINDS = (FramePoses, PartPoses, CameraInfo, DeviceState, DeviceLink)
+_KINDS = (FramePoses, PartPoses, CameraInfo, DeviceState, DeviceLink, CellModules)
 _READ = frozenset(kind.__name__ for kind in _KINDS)
 
 

@@ -133,12 +133,14 @@ class CellStateFrame(msgspec.Struct, frozen=True, kw_only=True, tag="cell", tag_
 
     `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those
     of the optical frames of cameras. `tools` are by the name of their arm, `devices` by their address on the bus.
+    `modules` are the connectors of modules by their names, empty where one is not plugged.
     """
 
     poses: dict[str, Pose]
     cameras: dict[str, Pose]
     tools: dict[str, ToolHolds]
     devices: dict[str, DeviceNow] = {}
+    modules: dict[str, str] = {}
 
 
 class IdleFrame(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):

@@ -12,6 +12,7 @@ from engine.messages import FramePoses, GripperState, PartPoses, Pose
 from engine.messages.device_state import DeviceLink, DeviceState
 from engine.messages.sensing import CameraInfo, CameraIntrinsics
 from engine.project import BusInspector
+from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState
 from tests.editor_web.fake_backend import FakeBackend
 
 LENS = CameraIntrinsics(width_px=4, height_px=4, fx_px=2.0, fy_px=2.0, cx_px=1.5, cy_px=1.5)
@@ -89,3 +90,20 @@ async def test_real_devices_are_sent_with_how_fresh_their_readings_are() -> None
             "left/gripper": DeviceNow(state=state, link=link),
             "right": DeviceNow(state=state, link=None),
         }
+
+
+async def test_modules_say_where_they_are_plugged() -> None:
+    clock = Clock()
+    async with SkillBus(clock) as bus:
+        backend = FakeBackend()
+        backend.known_inspector = BusInspector(bus)
+        page = PageSubscriptions(backend)
+        page.look(DataSubscription(cell=True))
+        modules = (
+            ModuleState(module="trolley", kind="cart"),
+            ModuleState(module="rack", kind="rack", connector="east"),
+        )
+        bus.topic(MODULES_TOPIC, CellModules).publish(CellModules(modules=modules, free=("north",)))
+        frame = state_of(page)
+        assert frame is not None
+        assert frame.modules == {"trolley": "", "rack": "east"}

@@ -432,13 +432,14 @@ export interface CellItems {
   readonly items: readonly CellItem[]
 }
 
-/** Where the items of the cell are now; at most five per second, and only after a change. `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those of the optical frames of cameras. `tools` are by the name of their arm, `devices` by their address on the bus. */
+/** Where the items of the cell are now; at most five per second, and only after a change. `poses` are those of parts and frames in the world frame by name, rounded to 0.1 mm and 0.1 mrad; `cameras` those of the optical frames of cameras. `tools` are by the name of their arm, `devices` by their address on the bus. `modules` are the connectors of modules by their names, empty where one is not plugged. */
 export interface CellStateFrame {
   readonly k: "cell"
   readonly poses: Dict<Pose>
   readonly cameras: Dict<Pose>
   readonly tools: Dict<ToolHolds>
   readonly devices: Dict<DeviceNow>
+  readonly modules: Dict<string>
 }
 
 /** The latest stop: `stopping`, then `stopped` until an operator releases it, then `released`. While it is not released no run starts; an operator may move arms and tools by hand. `parts` is `reset` once the parts of a simulation are back at their initial poses, `absent` in a cell that cannot reset them. `devices` are arms and world, in the order of the cell. `real` are the devices with a driver. */

@@ -47,7 +47,7 @@ function page(item: string, onOpen = vi.fn(), role = 'operator') {
 function told(state: object): void {
   const socket = server().socket('/data')
   socket.accept()
-  socket.tell({ k: 'cell', poses: {}, cameras: {}, tools: {}, devices: {}, ...state })
+  socket.tell({ k: 'cell', poses: {}, cameras: {}, tools: {}, devices: {}, modules: {}, ...state })
 }
 
 it('shows the items with what they do, hold, and where they are', async () => {

@@ -22,6 +22,7 @@ const STATE: CellStateFrame = {
   cameras: { eye: { xyz: [0, 0, 2], xyzw: [0, 0, 0, 1], frame: 'world' } },
   tools: { left: { held: true, part: 'disk' } },
   devices: {},
+  modules: { trolley: '', rack: 'east' },
 }
 
 function item(path: string, kind: CellItem['kind'], told: Partial<CellItem> = {}): CellItem {
@@ -132,4 +133,12 @@ it('writes a pose in metres and degrees', () => {
   const node = nodeAt(TREE, 'frames/left/tool')
   const pose = node && poseOf(node, STATE)
   expect(pose && [positionText(pose), orientationText(pose)]).toEqual(['0.000, 0.000, 1.000 m', '180.0°, 0.0°, 0.0°'])
+})
+
+it.each([
+  ['trolley', 'not plugged', 'skipped'],
+  ['rack', 'at east', 'idle'],
+])('says of the module %s: %s', (name, words, look) => {
+  const [module] = cellTree([item(`modules/${name}`, 'module')], [])[0]?.children ?? []
+  expect(module && stateWords(module, { robots: {}, state: STATE })).toEqual({ words, look })
 })

@@ -165,6 +165,11 @@ export function stateWords(node: CellNode, now: CellNow): { readonly words: stri
       const words = holder ? `held by ${holder}` : pose && positionText(pose)
       return words === undefined ? undefined : { words, look: 'idle' }
     }
+    case 'module': {
+      const connector = now.state && lookup(now.state.modules, name)
+      if (connector === undefined) return undefined
+      return connector ? { words: `at ${connector}`, look: 'idle' } : { words: 'not plugged', look: 'skipped' }
+    }
     default: {
       const pose = poseOf(node, now.state)
       return pose && { words: positionText(pose), look: 'idle' }

@@ -84,6 +84,7 @@ it('says what each thing is and how it is now', () => {
     cameras: {},
     tools: { left: { held: true, part: 'plate' } },
     devices: {},
+    modules: {},
   }
   const items = [
     item('robot', 'robots/left', 'panda'),
