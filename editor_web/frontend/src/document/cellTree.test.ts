@@ -138,7 +138,7 @@ it('writes a pose in metres and degrees', () => {
 it.each([
   ['trolley', 'not plugged', 'skipped'],
   ['rack', 'at east', 'idle'],
-])('says of the module %s: %s', (name, words, look) => {
+])('says of the module %s: %s', (name, said, look) => {
   const [module] = cellTree([item(`modules/${name}`, 'module')], [])[0]?.children ?? []
-  expect(module && stateWords(module, { robots: {}, state: STATE })).toEqual({ words, look })
+  expect(module && stateWords(module, { robots: {}, state: STATE })).toEqual({ words: said, look })
 })
