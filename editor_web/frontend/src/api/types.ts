@@ -38,6 +38,14 @@ export interface AdaptationRequest {
   readonly names?: Dict<string>
 }
 
+/** Add an item at the end of a section, which is written if the document has none. */
+export interface AddCellItem {
+  readonly edit: "add_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly value: Dict<unknown>
+}
+
 /** Insert a new node into a container; its name is generated if none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` returns them are the content instead. `after` connects the open success outcomes of a sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the children. */
 export interface AddNode {
   readonly edit: "add_node"
@@ -402,6 +410,42 @@ export interface CauseLine {
 export interface CellConnection {
   readonly connected: boolean
   readonly reason: string
+}
+
+/** A document of the cell on disk; `saved_at` is the time of its last change, seconds since 1970. */
+export interface CellDocumentBody {
+  readonly id: string
+  readonly saved_at: number
+  readonly draft: CellDraft
+}
+
+/** A document that can be edited: its id is its path in the project. `folder` is what a cell document beside the open one writes for a module; empty for the cell itself. */
+export interface CellDocumentName {
+  readonly id: string
+  readonly kind: "cell" | "module"
+  readonly folder: string
+}
+
+/** What a text says; one that cannot be read has findings and no items. `frames` are the poses in the world, or in the frame of the module, of all that something may stand in; none while the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item. */
+export interface CellDraft {
+  readonly text: string
+  readonly hash: string
+  readonly kind: "cell" | "module"
+  readonly items: readonly DraftItem[]
+  readonly findings: readonly FindingView[]
+  readonly frames: Dict<Pose>
+}
+
+/** A text after edits, with what it says; the text as it was if an edit was refused. */
+export interface CellEditAnswer {
+  readonly draft: CellDraft
+  readonly refused: EditRefusal | null
+}
+
+/** A text and the edits to apply, all or none. */
+export interface CellEditsBody {
+  readonly text: string
+  readonly edits: readonly (AddCellItem | RemoveCellItem | RenameCellItem | SetCellField)[]
 }
 
 /** The cell that a behavior is written for, and why it cannot be executed in the connected one. */
@@ -791,6 +835,15 @@ export interface DocumentsChanged {
 export interface DraftBody {
   readonly text: string
   readonly check?: boolean
+}
+
+/** An item of a document as written, with its first and last line, from 1. */
+export interface DraftItem {
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly line: number
+  readonly end_line: number
+  readonly value: Dict<unknown>
 }
 
 /** From the page, every 50 ms while the mouse is down on its 3D view. */
@@ -2165,10 +2218,25 @@ export interface ReleaseStopBody {
   readonly stop?: number | null
 }
 
+/** Remove an item that nothing else in the document names. */
+export interface RemoveCellItem {
+  readonly edit: "remove_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+}
+
 /** Remove nodes, with the transitions and conditions that name them; other references become findings. */
 export interface RemoveNodes {
   readonly edit: "remove_nodes"
   readonly paths: readonly string[]
+}
+
+/** Rename an item, with all that names it in the document. */
+export interface RenameCellItem {
+  readonly edit: "rename_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly new_name: string
 }
 
 /** Rename a node; all references to it are updated. */
@@ -2467,6 +2535,15 @@ export interface SetCanvasNote {
   readonly path: string
   readonly name: string
   readonly note: CanvasNote | null
+}
+
+/** Set a field of an item; null removes it, so that its default applies. Of a list and of a mapping only what differs is written: the other values keep their spelling. */
+export interface SetCellField {
+  readonly edit: "set_field"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly field: readonly string[]
+  readonly value: unknown
 }
 
 /** Change declarations of the document; null removes a key. Other keys are unchanged. Keys: name, description, cell, parameters, userdata, outcomes, success. */
