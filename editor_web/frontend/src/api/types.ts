@@ -1543,6 +1543,13 @@ export interface MappedName {
   readonly paths: readonly string[]
 }
 
+/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `at` is the pose of its centre in the world. */
+export interface MarkedBody {
+  readonly shape: "box" | "cylinder" | "sphere"
+  readonly size_m: readonly number[]
+  readonly at: readonly [readonly [number, number, number], readonly [number, number, number, number]]
+}
+
 /** The distribution of a measure over the runs that succeeded, and over those that did not. */
 export interface MeasureSpread {
   readonly name: string
@@ -2609,6 +2616,7 @@ export interface ShowMarks {
   readonly points?: readonly (readonly [number, number, number])[]
   readonly box?: readonly [readonly [number, number, number], readonly [number, number, number]] | null
   readonly axes?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
+  readonly body?: MarkedBody | null
 }
 
 /** From the client: what this page shows; the last one counts, and goes with the connection. */

@@ -1,0 +1,131 @@
+/** The properties of one item: what is changed here is seen in 3D at once, and in the document when it is applied. */
+import { Button, Group, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
+import { IconTrash } from '@tabler/icons-react'
+import { useState } from 'react'
+import { CommandButton } from '../../components/CommandButton'
+import { Refusal } from '../../components/Refusal'
+import type { DraftItem } from '../../api/types'
+import {
+  editsBetween,
+  fieldsFor,
+  itemAddress,
+  keyOf,
+  nameFault,
+  shownItem,
+  valueAt,
+  withShape,
+  withValue,
+  type Surroundings,
+} from '../../document/cellEditing'
+import { FieldInput, fieldFault } from './FieldInput'
+import { edit } from './session'
+import { draftOf, useCellEditor } from './store'
+import { useShownItem } from './useShownItem'
+
+interface ItemFormProps {
+  readonly item: DraftItem
+  readonly surroundings: Surroundings
+  readonly onSelect: (address: string) => void
+}
+
+export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
+  const { section, name, value } = item
+  const [next, setNext] = useState(value)
+  const [newName, setNewName] = useState(name)
+  const frames = useCellEditor((s) => draftOf(s).frames)
+  const kind = useCellEditor((s) => draftOf(s).kind)
+  const findings = useCellEditor((s) => draftOf(s).findings)
+  const path = `${section}/${name}`
+  const fields = fieldsFor(section, next, {
+    ...surroundings,
+    // Nothing stands in itself; the connector that a module has is not free for others.
+    frames: surroundings.frames.filter((each) => each !== name && !each.startsWith(`${name}/`)),
+  })
+  const edits = editsBetween(item, next, newName, fields)
+  const fault = nameFault(newName) ?? fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
+  useShownItem(kind === 'cell' ? shownItem(section, next, frames) : undefined)
+
+  async function apply(): Promise<void> {
+    if (edits.length === 0 || fault !== undefined) return
+    const isMade = await edit(newName === name ? `Change ${name}` : `Rename ${name}`, edits)
+    if (isMade && newName !== name) onSelect(itemAddress({ section, name: newName }))
+  }
+
+  async function remove(): Promise<void> {
+    if (await edit(`Delete ${name}`, [{ edit: 'remove_item', section, name }])) onSelect('')
+  }
+
+  return (
+    <ScrollArea h="100%" viewportProps={{ tabIndex: 0, role: 'region', 'aria-label': `Properties of ${name}` }}>
+      <form
+        aria-label={`Change ${name}`}
+        onSubmit={(event) => {
+          event.preventDefault()
+          void apply()
+        }}
+      >
+        <Stack gap="xs" p="sm">
+          {findings
+            .filter((each) => each.path === path)
+            .map((each) => (
+              <Refusal key={`${each.line} ${each.message}`} hint={each.hint}>
+                {each.message}
+              </Refusal>
+            ))}
+          <TextInput
+            size="xs"
+            label="Name"
+            value={newName}
+            error={nameFault(newName)}
+            onChange={(event) => setNewName(event.currentTarget.value)}
+          />
+          {newName !== name && (
+            <Text size="xs" c="dimmed">
+              All that names it in this document follows. Behaviors and taught entries that name {name} do not: search for it there.
+            </Text>
+          )}
+          {fields.map((field) => (
+            <FieldInput
+              key={keyOf(field.path)}
+              field={field}
+              value={valueAt(next, field.path)}
+              onChange={(made) =>
+                setNext(
+                  keyOf(field.path) === 'shape' && typeof made === 'string' ? withShape(next, made) : withValue(next, field.path, made),
+                )
+              }
+            />
+          ))}
+          <Group gap="xs" mt="xs">
+            <Button type="submit" size="xs" disabled={edits.length === 0 || fault !== undefined} title={fault ?? ''}>
+              Apply
+            </Button>
+            <Button
+              size="xs"
+              variant="default"
+              disabled={edits.length === 0}
+              onClick={() => {
+                setNext(value)
+                setNewName(name)
+              }}
+            >
+              Reset
+            </Button>
+            <CommandButton
+              label="Delete"
+              of={name}
+              tone="danger"
+              icon={<IconTrash size={14} aria-hidden />}
+              onPress={() => void remove()}
+            />
+          </Group>
+          {fault !== undefined && (
+            <Text size="xs" c="var(--failed)" role="status">
+              {fault}
+            </Text>
+          )}
+        </Stack>
+      </form>
+    </ScrollArea>
+  )
+}
