@@ -29,7 +29,6 @@ import { EditorBar } from '../features/cellEditor/EditorBar'
 import { ItemForm } from '../features/cellEditor/ItemForm'
 import { openCellDocument } from '../features/cellEditor/session'
 import { draftOf, useCellEditor } from '../features/cellEditor/store'
-import { useUnsavedCell } from '../features/cellEditor/useUnsavedCell'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { DevicePanel } from '../features/devices/DevicePanel'
@@ -60,7 +59,6 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const { value: documents = NO_DOCUMENTS } = useAnswer(cellDocumentsQuery(mayEdit))
   const phase = useCellEditor((s) => s.phase)
   const draft = useCellEditor((s) => (s.phase === 'ready' ? draftOf(s) : undefined))
-  useUnsavedCell()
   const client = useQueryClient()
   const tree = useMemo(() => {
     const shown = frames && draft?.kind !== 'module' ? frames.split('\n') : []

@@ -1,5 +1,6 @@
 /** Numbers of a value, each with its name and unit. */
 import { Group, NumberInput, Text } from '@mantine/core'
+import { useState } from 'react'
 
 export interface VectorFieldsProps {
   readonly label: string
@@ -18,28 +19,58 @@ export function VectorFields({ label, names, unit, values, digits = 4, minimum, 
         {label}
       </Text>
       {names.map((name, at) => (
-        <NumberInput
+        <NumberField
           key={name}
-          size="xs"
-          flex={1}
-          miw={0}
-          hideControls
-          aria-label={`${label} ${name}`}
-          leftSection={
-            <Text span size="xs" c="dimmed">
-              {name}
-            </Text>
-          }
-          leftSectionWidth={name.length > 1 ? 42 : 24}
-          decimalScale={digits}
-          {...(minimum === undefined ? {} : { min: minimum })}
-          value={Number((values[at] ?? 0).toFixed(digits))}
-          onChange={(value) => typeof value === 'number' && onChange(names.map((_, each) => (each === at ? value : (values[each] ?? 0))))}
+          label={`${label} ${name}`}
+          name={name}
+          digits={digits}
+          minimum={minimum}
+          value={values[at] ?? 0}
+          onChange={(value) => onChange(names.map((_, each) => (each === at ? value : (values[each] ?? 0))))}
         />
       ))}
       <Text size="xs" c="dimmed" w="1.8rem" flex="none">
         {unit}
       </Text>
     </Group>
+  )
+}
+
+interface NumberFieldProps {
+  readonly label: string
+  readonly name: string
+  readonly digits: number
+  readonly minimum: number | undefined
+  readonly value: number
+  readonly onChange: (value: number) => void
+}
+
+function NumberField({ label, name, digits, minimum, value, onChange }: NumberFieldProps) {
+  // As it was typed: `1.0` is a number already, and may become `1.05`.
+  const [typed, setTyped] = useState('')
+  const rounded = Number(value.toFixed(digits))
+  return (
+    <NumberInput
+      size="xs"
+      flex={1}
+      miw={0}
+      hideControls
+      aria-label={label}
+      leftSection={
+        <Text span size="xs" c="dimmed">
+          {name}
+        </Text>
+      }
+      leftSectionWidth={name.length > 1 ? 12 + 6 * name.length : 24}
+      decimalScale={digits}
+      {...(minimum === undefined ? {} : { min: minimum })}
+      value={typed !== '' && Number(typed) === rounded ? typed : rounded}
+      onChange={(next) => {
+        const text = String(next)
+        if (text.trim() === '' || !Number.isFinite(Number(text))) return
+        setTyped(text)
+        onChange(Number(text))
+      }}
+    />
   )
 }

@@ -6,7 +6,7 @@ import { Box } from '@mantine/core'
 import { useEffect, useRef } from 'react'
 import { diagnosticOf, FromPage, showLines, showText, yamlText } from '../../components/yamlText'
 import { itemAddress, itemAt, itemAtLine } from '../../document/cellEditing'
-import { redo, save, typed, undo } from './session'
+import { redo, typed, undo } from './session'
 import { cellEditor, draftOf, useCellEditor } from './store'
 
 interface CellTextProps {
@@ -67,7 +67,6 @@ function newView(parent: HTMLElement, onItem: (address: string) => void): Editor
           { key: 'Mod-z', run: done(undo) },
           { key: 'Mod-y', run: done(redo) },
           { key: 'Mod-Shift-z', run: done(redo) },
-          { key: 'Mod-s', run: done(() => void save()) },
         ]),
         yamlText('Text of the cell'),
         EditorView.updateListener.of((update) => {

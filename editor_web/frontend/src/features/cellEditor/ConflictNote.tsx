@@ -16,7 +16,10 @@ export function ConflictNote({ onSaved }: { readonly onSaved: () => void }) {
         : [...(line.left === undefined ? [] : [`- ${line.left}`]), ...(line.right === undefined ? [] : [`+ ${line.right}`])],
   )
   return (
-    <Alert color="yellow" radius={0} title="The file has changed on disk" role="alert">
+    <Alert color="yellow" radius={0} role="alert">
+      <Text size="sm" fw={600}>
+        The file has changed on disk
+      </Text>
       <Text size="sm">
         Both have changed the same lines. Yours begin with -, those of the file with +; whatever you choose, both texts stay versions.
       </Text>

@@ -11,6 +11,7 @@ import { canRedo, canUndo } from '../../document/editing/history'
 import { ConflictNote } from './ConflictNote'
 import { closeCellDocument, jumpTo, openCellDocument, redo, save, undo } from './session'
 import { draftOf, isDirty, setCellEditor, useCellEditor } from './store'
+import { useCellKeys } from './useCellKeys'
 
 const SHOWN_STEPS = 100
 
@@ -36,6 +37,8 @@ export function EditorBar({ documents, session, isChanged, onSaved }: EditorBarP
   async function write(): Promise<void> {
     if (await save()) onSaved()
   }
+
+  useCellKeys(() => void write())
 
   return (
     <>

@@ -41,6 +41,7 @@ export function FieldInput({ field, value, onChange }: FieldInputProps) {
           size="xs"
           label={field.label}
           placeholder="As usual"
+          withEyeDropper={false}
           value={typeof value === 'string' ? value : ''}
           onChange={(colour) => onChange(colour || undefined)}
         />

@@ -56,14 +56,17 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   }
 
   return (
-    <ScrollArea h="100%" viewportProps={{ tabIndex: 0, role: 'region', 'aria-label': `Properties of ${name}` }}>
-      <form
-        aria-label={`Change ${name}`}
-        onSubmit={(event) => {
-          event.preventDefault()
-          void apply()
-        }}
-      >
+    <Stack
+      component="form"
+      h="100%"
+      gap={0}
+      aria-label={`Change ${name}`}
+      onSubmit={(event) => {
+        event.preventDefault()
+        void apply()
+      }}
+    >
+      <ScrollArea flex={1} viewportProps={{ tabIndex: 0, role: 'region', 'aria-label': `Properties of ${name}` }}>
         <Stack gap="xs" p="sm">
           {findings
             .filter((each) => each.path === path)
@@ -96,36 +99,30 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
               }
             />
           ))}
-          <Group gap="xs" mt="xs">
-            <Button type="submit" size="xs" disabled={edits.length === 0 || fault !== undefined} title={fault ?? ''}>
-              Apply
-            </Button>
-            <Button
-              size="xs"
-              variant="default"
-              disabled={edits.length === 0}
-              onClick={() => {
-                setNext(value)
-                setNewName(name)
-              }}
-            >
-              Reset
-            </Button>
-            <CommandButton
-              label="Delete"
-              of={name}
-              tone="danger"
-              icon={<IconTrash size={14} aria-hidden />}
-              onPress={() => void remove()}
-            />
-          </Group>
           {fault !== undefined && (
             <Text size="xs" c="var(--failed)" role="status">
               {fault}
             </Text>
           )}
         </Stack>
-      </form>
-    </ScrollArea>
+      </ScrollArea>
+      <Group gap="xs" px="sm" py="xs" flex="none">
+        <Button type="submit" size="xs" disabled={edits.length === 0 || fault !== undefined} title={fault ?? ''}>
+          Apply
+        </Button>
+        <Button
+          size="xs"
+          variant="default"
+          disabled={edits.length === 0}
+          onClick={() => {
+            setNext(value)
+            setNewName(name)
+          }}
+        >
+          Reset
+        </Button>
+        <CommandButton label="Delete" of={name} tone="danger" icon={<IconTrash size={14} aria-hidden />} onPress={() => void remove()} />
+      </Group>
+    </Stack>
   )
 }
