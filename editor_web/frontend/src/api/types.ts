@@ -1320,6 +1320,14 @@ export interface InterruptedRun {
 /** The rates, from 0 to 1 (of a difference from -1), that the runs do not exclude. */
 export type Interval = readonly [number, number]
 
+/** To the page: where its handle is dragged in the world; at the phase `end` the mouse is up. */
+export interface ItemHandleMoved {
+  readonly k: "placed"
+  readonly phase: "end" | "start" | "update"
+  readonly xyz: readonly [number, number, number]
+  readonly xyzw: readonly [number, number, number, number]
+}
+
 /** What the arm that this page jogs stands before, and which directions lead out; no names for nothing. */
 export interface JogBlockFrame {
   readonly k: "block"
@@ -2603,6 +2611,13 @@ export interface ShowHandle {
   readonly mode?: "move" | "push"
 }
 
+/** From the page: show a handle at a pose in the world, or none; it moves nothing, the page is told where it is. */
+export interface ShowItemHandle {
+  readonly k: "place"
+  readonly at?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
+  readonly turns?: boolean
+}
+
 /** From the client: the 3D view under `/cell/<page>/` shows exactly these groups. */
 export interface ShowLayers {
   readonly k: "show"
@@ -3329,6 +3344,6 @@ export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | States
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame | ItemHandleMoved
 
-export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks
+export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks | ShowItemHandle

@@ -349,7 +349,7 @@ export function shownItem(section: Section, value: Dict<unknown>, frames: CellDr
 }
 
 /** The name of what an item stands in. */
-function frameOf(section: Section, value: Dict<unknown>): string {
+export function frameOf(section: Section, value: Dict<unknown>): string {
   const paths: Readonly<Record<Section, readonly string[]>> = {
     fixtures: ['at', 'frame'],
     parts: ['at', 'frame'],

@@ -1,5 +1,5 @@
 /** The properties of one item: what is changed here is seen in 3D at once, and in the document when it is applied. */
-import { Button, Group, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
+import { Button, Group, NativeSelect, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
 import { IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { CommandButton } from '../../components/CommandButton'
@@ -17,9 +17,11 @@ import {
   withValue,
   type Surroundings,
 } from '../../document/cellEditing'
+import { canDrag, canTurn, DRAG_STEPS, draggedTo, type DragSteps } from '../../document/cellPlacing'
 import { FieldInput, fieldFault } from './FieldInput'
 import { edit } from './session'
-import { draftOf, useCellEditor } from './store'
+import { cellEditor, draftOf, setCellEditor, useCellEditor } from './store'
+import { useItemHandle } from './useItemHandle'
 import { useShownItem } from './useShownItem'
 
 interface ItemFormProps {
@@ -43,7 +45,12 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   })
   const edits = editsBetween(item, next, newName, fields)
   const fault = nameFault(newName) ?? fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
-  useShownItem(kind === 'cell' ? shownItem(section, next, frames) : undefined)
+  const steps = useCellEditor((s) => s.steps)
+  const shown = kind === 'cell' ? shownItem(section, next, frames) : undefined
+  useShownItem(shown)
+  useItemHandle(canDrag(section) && steps !== 'off' ? shown?.pose : undefined, canTurn(section), (pose) => {
+    if (steps !== 'off') setNext((now) => draggedTo({ section, name, value: now }, pose, draftOf(cellEditor()), steps))
+  })
 
   async function apply(): Promise<void> {
     if (edits.length === 0 || fault !== undefined) return
@@ -103,6 +110,16 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
             <Text size="xs" c="var(--failed)" role="status">
               {fault}
             </Text>
+          )}
+          {kind === 'cell' && canDrag(section) && (
+            <NativeSelect
+              size="xs"
+              label="Drag in the 3D view"
+              description="By the arrows and rings, in these steps, or onto a connector"
+              value={steps}
+              data={[{ value: 'off', label: 'off' }, ...Object.entries(DRAG_STEPS).map(([key, { label }]) => ({ value: key, label }))]}
+              onChange={(event) => setCellEditor({ steps: event.currentTarget.value as DragSteps })}
+            />
           )}
         </Stack>
       </ScrollArea>

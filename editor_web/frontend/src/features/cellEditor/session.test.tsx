@@ -10,8 +10,8 @@ import { cellEditor, draftOf, isDirty } from './store'
 const ID = 'behaviors/cells/bench.yaml'
 const AT = `/cell_documents/${ID}`
 
-function drafted(text: string): CellDraft {
-  return { text, hash: `hash of ${text}`, kind: 'cell', items: [], findings: [], frames: {} }
+function drafted(made: string): CellDraft {
+  return { text: made, hash: `hash of ${made}`, kind: 'cell', items: [], findings: [], frames: {} }
 }
 
 function text(): string {

@@ -32,7 +32,7 @@ function refuse(what: string, message: string, hint = ''): void {
 
 export async function openCellDocument(id: string): Promise<void> {
   turns.getState().pause.cancel()
-  useCellEditor.setState({ ...blank(), id, phase: 'loading' }, true)
+  useCellEditor.setState({ ...blank(), steps: cellEditor().steps, id, phase: 'loading' }, true)
   try {
     const { draft } = await cellDocuments.open(id)
     if (cellEditor().id !== id) return

@@ -1,6 +1,7 @@
 /** What the editor of the cell holds: the document under edit with its history, and what the server last refused. */
 import type { CellDraft, ConflictBody } from '../../api/types'
 import { pageStore } from '../../api/pageStore'
+import type { DragSteps } from '../../document/cellPlacing'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
 
 /** A draft; one that was just typed has still the items of the text before. */
@@ -18,6 +19,8 @@ export interface CellEditorState {
   readonly isBusy: boolean
   readonly notice: { readonly what: string; readonly message: string; readonly hint: string } | undefined
   readonly conflict: ConflictBody | undefined
+  /** The steps of drags in the 3D view. */
+  readonly steps: DragSteps
 }
 
 const NOTHING: CellText = { text: '', hash: '', kind: 'cell', items: [], findings: [], frames: {} }
@@ -32,6 +35,7 @@ export function blank(): CellEditorState {
     isBusy: false,
     notice: undefined,
     conflict: undefined,
+    steps: 'off',
   }
 }
 
