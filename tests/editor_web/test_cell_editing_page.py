@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Generator
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
 from editor_web.server import Dashboard
 from tests.editor_web.browsing import SCHEMES, Scheme, opened_page, require_accessible
+from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.real_server import dashboard_of
 from tests.engine.cli.process import started
 from tests.engine.editing.cells.cell_texts import CELL, write_cell
+
+PULLS = 4
 
 
 @pytest.fixture(scope="module")
@@ -126,6 +134,49 @@ def test_a_change_on_disk_is_for_a_person_to_decide(browser: Browser, served: tu
         conflict.get_by_role("button", name="Overwrite with yours").click()
         expect(conflict).to_have_count(0)
         assert file.read_text() == CELL.replace("mass_kg: 0.5", "mass_kg: 0.6")
+
+
+def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
+    """Where the arrow along z ends on the screen, as long as nothing else in the view is of that blue."""
+    box = page.locator("iframe[title='3D view of the cell']").bounding_box()
+    assert box is not None
+    area: Any = {key: box[key] for key in ("x", "y", "width", "height")}
+    picture = np.asarray(Image.open(BytesIO(page.screenshot(clip=area, timeout=GUARD_MS))).convert("RGB"), dtype=int)
+    red, green, blue = (picture[..., channel] for channel in range(3))
+    rows, columns = np.nonzero((blue > 200) & (red < 90) & (green > 100) & (green < 160))
+    if len(rows) < 50:
+        return None
+    tip = rows < rows.min() + 8
+    return box["x"] + float(columns[tip].mean()), box["y"] + float(rows[tip].mean())
+
+
+def test_a_box_is_dragged_in_the_3d_view_by_whole_steps(browser: Browser, served: tuple[Dashboard, Path]) -> None:
+    """Only the numbers of the form change; the document does when they are applied."""
+    with opened_page(browser, served[0], "/workcell", quiet=False) as page:
+        begin(page)
+        page.get_by_role("button", name="Add", exact=True).click()
+        page.get_by_role("menuitem", name="Box").click()
+        page.get_by_label("Position z").fill("1.0")
+        page.get_by_label("Drag in the 3D view").select_option("usual")
+        height = page.get_by_label("Position z")
+        for _ in range(PULLS):
+            before, tip = None, tip_of_the_blue_arrow(page)
+            # Until it is drawn, and where it stays.
+            while tip is None or tip != before:
+                before, tip = tip, tip_of_the_blue_arrow(page)
+            page.mouse.move(*tip)
+            page.mouse.down()
+            page.mouse.move(tip[0], tip[1] - 50, steps=6)
+            page.mouse.up()
+            with suppress(AssertionError):
+                expect(height).not_to_have_value(re.compile(r"^1(\.0)?$"), timeout=GUARD_MS / 4)
+                break
+        moved_m = float(height.input_value())
+        assert moved_m > 1.0
+        assert moved_m == pytest.approx(round(moved_m, 2))
+        assert "xyz: [0, 0, 0.05]" in text_of(page)
+        page.get_by_role("button", name="Apply").click()
+        expect(page.get_by_role("textbox", name="Text of the cell")).to_contain_text(f"xyz: [0, 0, {moved_m:g}]")
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import difflib
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
 from engine.document.text.yaml_source import parse_source
+from engine.editing.cells.cell_draft import SECTIONS
 from engine.editing.cells.cell_edit import AddCellItem, CellSection, RemoveCellItem, RenameCellItem, SetCellField
 from tests.engine.editing.cells.cell_texts import CELL, edited, refusal
 
@@ -26,6 +28,11 @@ def changed_lines(after: str, *, before: str = CELL) -> list[str]:
     return [line for line in lines if line[:1] in "+-" and line[:3] not in ("+++", "---")]
 
 
+def sections_of(text: str) -> dict[str, Any]:
+    """The plain data of a document."""
+    return cast("dict[str, Any]", parse_source(text, file="bench.yaml").data)
+
+
 def set_field(section: CellSection, name: str, *field: str, value: object) -> SetCellField:
     return SetCellField(section=section, name=name, field=field, value=value)
 
@@ -38,14 +45,14 @@ def test_there_are_shipped_cells() -> None:
 def test_edits_that_change_nothing_change_no_byte_of_a_shipped_document(file: Path) -> None:
     """Every field of every item is set to what it is, and an item is added and removed."""
     text = file.read_bytes().decode()
-    data = parse_source(text, file=file.name).data
+    data = sections_of(text)
     same = [
         SetCellField(section=section, name=name, field=(field,), value=value)
-        for section in ("fixtures", "parts", "cameras", "frames", "connectors", "modules")
-        for name, item in (data.get(section) or {}).items()
+        for section in SECTIONS["cell"]
+        for name, item in cast("dict[str, dict[str, object]]", data.get(section) or {}).items()
         for field, value in item.items()
     ]
-    box = {"shape": "box", "size_m": [1, 1, 1]}
+    box: dict[str, object] = {"shape": "box", "size_m": [1, 1, 1]}
     added = AddCellItem(section="fixtures", name="a_new_box", value=box)
     removed = RemoveCellItem(section="fixtures", name="a_new_box")
     assert edited(*same, text=text) == text
@@ -81,18 +88,22 @@ def test_a_pose_without_numbers_is_not_written() -> None:
 
 
 def test_a_new_item_stands_at_the_end_of_its_section() -> None:
-    value = {"shape": "box", "size_m": [0.1, 0.2, 0.3], "at": {"xyz": [0, 0, 0.15], "frame": "table"}}
+    value: dict[str, object] = {
+        "shape": "box",
+        "size_m": [0.1, 0.2, 0.3],
+        "at": {"xyz": [0, 0, 0.15], "frame": "table"},
+    }
     after = edited(AddCellItem(section="fixtures", name="block", value=value))
     assert changed_lines(after) == [
         "+  block: {shape: box, size_m: [0.1, 0.2, 0.3], at: {xyz: [0, 0, 0.15], frame: table}}"
     ]
-    assert list(parse_source(after, file="x").data["fixtures"]) == ["floor", "table", "block"]
+    assert list(sections_of(after)["fixtures"]) == ["floor", "table", "block"]
 
 
 def test_a_missing_section_is_written_in_its_place() -> None:
     text = "flexcell: 1\ncell: bare\n\nrobots: {}   # none yet\n\nframes:\n  a: {}\n"
     after = edited(AddCellItem(section="fixtures", name="box", value={"shape": "box"}), text=text)
-    assert list(parse_source(after, file="x").data) == ["flexcell", "cell", "robots", "fixtures", "frames"]
+    assert list(sections_of(after)) == ["flexcell", "cell", "robots", "fixtures", "frames"]
     assert "robots: {}   # none yet\n" in after
 
 

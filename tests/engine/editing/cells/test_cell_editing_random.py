@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -21,15 +21,26 @@ NAMES = st.sampled_from(["fresh_a", "fresh_b", "fresh_c", "table", "slot"])
 NUMBERS = st.one_of(st.integers(-3, 3), st.floats(-2, 2, allow_nan=False)).map(lambda each: round(each, 6))
 VECTORS = st.lists(NUMBERS, min_size=3, max_size=3)
 FRAMES = st.sampled_from(["world", "floor", "dock", "bin"])
-BODIES = st.builds(
-    lambda shape, xyz, frame: {**shape, "at": {"xyz": xyz, "frame": frame}},
-    st.sampled_from([{"shape": "box", "size_m": [0.1, 0.2, 0.3]}, {"shape": "cylinder", "size_m": [0.1, 0.2]}]),
-    VECTORS,
-    FRAMES,
-)
+
+
+def body(shape: dict[str, object], xyz: list[float], frame: str) -> dict[str, object]:
+    """A fixture."""
+    return {**shape, "at": {"xyz": xyz, "frame": frame}}
+
+
+def standing(frame: str) -> dict[str, object]:
+    """A frame in another."""
+    return {"parent": frame}
+
+
+SHAPES: list[dict[str, object]] = [
+    {"shape": "box", "size_m": [0.1, 0.2, 0.3]},
+    {"shape": "cylinder", "size_m": [0.1, 0.2]},
+]
+BODIES = st.builds(body, st.sampled_from(SHAPES), VECTORS, FRAMES)
 EDITS: st.SearchStrategy[AnyCellEdit] = st.one_of(
     st.builds(AddCellItem, section=st.just("fixtures"), name=NAMES, value=BODIES),
-    st.builds(AddCellItem, section=st.just("frames"), name=NAMES, value=st.builds(dict, parent=FRAMES)),
+    st.builds(AddCellItem, section=st.just("frames"), name=NAMES, value=st.builds(standing, FRAMES)),
     st.builds(RemoveCellItem, section=st.sampled_from(["fixtures", "frames"]), name=NAMES),
     st.builds(RenameCellItem, section=st.sampled_from(["fixtures", "frames"]), name=NAMES, new_name=NAMES),
     st.builds(
@@ -79,7 +90,8 @@ def _with_name(value: Any, old: str, new: str) -> Any:
 @given(edits=st.lists(EDITS, max_size=12))
 def test_random_edits_say_in_the_text_what_they_do_to_the_data(tmp_path_factory: Any, edits: list[AnyCellEdit]) -> None:
     file = _file(tmp_path_factory)
-    texts, expected = [CELL], parse_source(CELL, file="x").data
+    texts = [CELL]
+    expected: dict[str, Any] = cast("dict[str, Any]", parse_source(CELL, file="x").data)
     for edit in edits:
         made, refused = apply_cell_edits(texts[-1], [edit], file=str(file))
         if refused is not None:
