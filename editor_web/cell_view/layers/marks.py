@@ -26,12 +26,12 @@ _Length = Annotated[float, msgspec.Meta(gt=0.0, le=1000.0)]
 class MarkedBody(msgspec.Struct, frozen=True, kw_only=True):
     """A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter.
 
-    `at` is the pose of its centre in the world.
+    `pose` is that of its centre in the world.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
     size_m: Annotated[tuple[_Length, ...], msgspec.Meta(min_length=1, max_length=3)]
-    at: tuple[Vector3, Quaternion]
+    pose: tuple[Vector3, Quaternion]
 
 
 class Marks(msgspec.Struct, frozen=True, kw_only=True):
@@ -108,7 +108,7 @@ class MarkLayer:
     def _solid(self, body: MarkedBody) -> viser.SceneNodeHandle:
         scene, name = self._server.scene, f"{TAUGHT}/marks/body"
         first_m, last_m = body.size_m[0], body.size_m[-1]
-        xyz, (x, y, z, w) = body.at
+        xyz, (x, y, z, w) = body.pose
         wxyz = (w, x, y, z)
         match body.shape:
             case "sphere":

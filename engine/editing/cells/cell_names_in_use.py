@@ -100,9 +100,9 @@ def uses_of(data: Fields, section: CellSection, name: str) -> Iterator[NameInUse
 def _frame_places(data: Fields) -> Iterator[tuple[Fields, str, str]]:
     for section, places in _FRAME_FIELDS.items():
         for name, item in items_in(data, section):
-            for *way, key in places:
+            for *outer, key in places:
                 holder = item
-                for step in way:
+                for step in outer:
                     holder = fields_in(holder, step)
                 if key in holder:
                     yield holder, key, name

@@ -123,9 +123,9 @@ def test_marks_take_the_place_of_those_before(server: viser.ViserServer) -> None
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
-        (MarkedBody(shape="box", size_m=(0.4, 0.2, 0.1), at=TURNED), {"dimensions": (0.4, 0.2, 0.1)}),
-        (MarkedBody(shape="cylinder", size_m=(0.4, 0.1), at=TURNED), {"radius": 0.2, "height": 0.1}),
-        (MarkedBody(shape="sphere", size_m=(0.4,), at=TURNED), {"radius": 0.2}),
+        (MarkedBody(shape="box", size_m=(0.4, 0.2, 0.1), pose=TURNED), {"dimensions": (0.4, 0.2, 0.1)}),
+        (MarkedBody(shape="cylinder", size_m=(0.4, 0.1), pose=TURNED), {"radius": 0.2, "height": 0.1}),
+        (MarkedBody(shape="sphere", size_m=(0.4,), pose=TURNED), {"radius": 0.2}),
     ],
     ids=lambda value: value.shape if isinstance(value, MarkedBody) else "",
 )

@@ -1,6 +1,7 @@
 /** What can be edited of an item of a cell document: its fields, what a new one begins with, and the edits that change it. Pure. */
 import type { CellDraft, CellEditsBody, CellItem, DraftItem } from '../api/types'
 import { fieldsOf, lookup, type Dict } from './dict'
+import { firstOfPath } from './path'
 import { inWorld, NO_TURN, turnOf, vectorFrom, WORLD, type PlacedPose, type Vector } from './poses'
 
 export type Section = DraftItem['section']
@@ -242,11 +243,11 @@ export function freeName(stem: string, taken: ReadonlySet<string>): string {
 /** What the items of a draft can be related to; `folders` are those of all modules. */
 export function surroundingsOf({ items, frames, kind }: CellDraft, folders: readonly string[]): Surroundings {
   const known = Object.keys(frames)
-  const standing = items.filter(
+  const carriers = items.filter(
     ({ section }) => section === 'frames' || section === 'fixtures' || section === 'connectors' || section === 'modules',
   )
   // While the text has errors nobody knows what stands on its modules.
-  const all = known.length > 0 ? known : [WORLD, ...standing.map(({ name }) => name)]
+  const all = known.length > 0 ? known : [WORLD, ...carriers.map(({ name }) => name)]
   const used = new Set(items.filter(({ section }) => section === 'modules').map(({ value }) => lookup(value, 'connector')))
   const connectors = items.filter(({ section, name }) => section === 'connectors' && !used.has(name)).map(({ name }) => name)
   return { frames: kind === 'module' ? all : all.toSorted(byWorldFirst), connectors, folders }
@@ -286,7 +287,7 @@ export function itemsOfDraft(draft: CellDraft, open: readonly CellItem[]): reado
   const beside =
     draft.kind === 'module'
       ? []
-      : open.filter((each) => (each.owner ? modules.has(each.owner) || each.kind === 'tool' : !editable.has(each.path.split('/')[0] ?? '')))
+      : open.filter((each) => (each.owner ? modules.has(each.owner) || each.kind === 'tool' : !editable.has(firstOfPath(each.path))))
   const own = draft.items.map(({ section, name, line, value }): CellItem => {
     const path = `${section}/${name}`
     const known = open.find((each) => each.path === path)

@@ -28,7 +28,7 @@ def body(shape: dict[str, object], xyz: list[float], frame: str) -> dict[str, ob
     return {**shape, "at": {"xyz": xyz, "frame": frame}}
 
 
-def standing(frame: str) -> dict[str, object]:
+def frame_in(frame: str) -> dict[str, object]:
     """A frame in another."""
     return {"parent": frame}
 
@@ -40,7 +40,7 @@ SHAPES: list[dict[str, object]] = [
 BODIES = st.builds(body, st.sampled_from(SHAPES), VECTORS, FRAMES)
 EDITS: st.SearchStrategy[AnyCellEdit] = st.one_of(
     st.builds(AddCellItem, section=st.just("fixtures"), name=NAMES, value=BODIES),
-    st.builds(AddCellItem, section=st.just("frames"), name=NAMES, value=st.builds(standing, FRAMES)),
+    st.builds(AddCellItem, section=st.just("frames"), name=NAMES, value=st.builds(frame_in, FRAMES)),
     st.builds(RemoveCellItem, section=st.sampled_from(["fixtures", "frames"]), name=NAMES),
     st.builds(RenameCellItem, section=st.sampled_from(["fixtures", "frames"]), name=NAMES, new_name=NAMES),
     st.builds(

@@ -12,9 +12,9 @@ export function useItemHandle(pose: PlacedPose | undefined, turns: boolean, onDr
   // A handle under the mouse stays the one that it is; where it was let go, it is drawn at the snapped pose.
   const isHeld = placed !== undefined && placed.phase !== 'end'
   const written = JSON.stringify(pose ?? null)
-  const tell = useEffectEvent(onDrag)
+  const report = useEffectEvent(onDrag)
   useEffect(() => {
-    if (placed) tell(placed)
+    if (placed) report(placed)
   }, [placed])
   useEffect(() => {
     if (!isOpen || isHeld) return

@@ -22,5 +22,5 @@ function show(item: ShownItem | null): void {
   if (!item) return sendToServer(NO_MARKS)
   const { pose, shape, size } = item
   const place = [pose.xyz, pose.xyzw] as const
-  sendToServer({ ...NO_MARKS, axes: place, body: shape === undefined ? null : { shape, size_m: size, at: place } })
+  sendToServer({ ...NO_MARKS, axes: place, body: shape === undefined ? null : { shape, size_m: size, pose: place } })
 }
