@@ -22,6 +22,7 @@ from tests.engine.cli.process import started
 from tests.engine.editing.cells.cell_texts import CELL, write_cell
 
 PULLS = 4
+UP_MS = 6 * GUARD_MS
 
 
 @pytest.fixture(scope="module")
@@ -134,6 +135,28 @@ def test_a_change_on_disk_is_for_a_person_to_decide(browser: Browser, served: tu
         conflict.get_by_role("button", name="Overwrite with yours").click()
         expect(conflict).to_have_count(0)
         assert file.read_text() == CELL.replace("mass_kg: 0.5", "mass_kg: 0.6")
+
+
+def test_the_cell_is_connected_anew_with_what_was_saved(browser: Browser, tmp_path: Path) -> None:
+    """In a server of its own: the editor stays open, and the open cell is that of the document then."""
+    file = write_cell(tmp_path)
+    with (
+        started("serve", "--cell", str(file.relative_to(tmp_path)), "--port", "0", cwd=tmp_path) as server,
+        opened_page(browser, dashboard_of(server, tmp_path / ".flexcell"), "/workcell", quiet=False) as page,
+    ):
+        begin(page)
+        page.get_by_role("button", name="Add", exact=True).click()
+        page.get_by_role("menuitem", name="Frame").click()
+        expect(page.get_by_role("form", name="Change frame_1")).to_be_visible()
+        expect(page.get_by_role("button", name="Connect the cell anew")).to_have_attribute("aria-disabled", "true")
+        page.keyboard.press("Control+s")
+        anew = page.get_by_role("button", name="Connect the cell anew")
+        expect(anew).to_be_enabled()
+        anew.click()
+        expect(page.get_by_text("as the document was when the cell was opened")).to_have_count(0, timeout=UP_MS)
+        expect(page.get_by_role("form", name="Change frame_1")).to_be_visible()
+        page.get_by_role("button", name="Close the editor").click()
+        expect(page.get_by_role("region", name="Details of frame_1")).to_contain_text("Position")
 
 
 def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
