@@ -6,6 +6,9 @@ cell.
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from fastapi import Query
 from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.cell_document_bodies import CellDocumentBody, CellEditsBody
@@ -14,7 +17,7 @@ from editor_web.http_bodies.document_bodies import ConflictBody, SaveBody, SaveR
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.cell import CellConnection, CellItems, DeviceDetails, devices_of_cell, items_of_cell
-from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
+from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer, NamingBehavior
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 documents = WireRouter(
@@ -36,6 +39,14 @@ async def get_items(services: ServicesOf) -> CellItems:
 async def get_devices(services: ServicesOf) -> tuple[DeviceDetails, ...]:
     """Return the devices with a driver: what it can do, what enabling does, its options and their schema."""
     return await run_in_threadpool(devices_of_cell, services.backend.cell.document)
+
+
+@router.get("/naming_behaviors")
+async def list_naming_behaviors(
+    services: ServicesOf, name: Annotated[str, Query(min_length=1, max_length=200)]
+) -> tuple[NamingBehavior, ...]:
+    """Return the saved behaviors for the open cell that name one of its items, or what stands on a module."""
+    return await run_in_threadpool(services.documents.naming, name)
 
 
 @router.get("/connection")

@@ -22,6 +22,7 @@ from engine.editing.analysis.data_flow import KeyFlow, data_flow
 from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.cells.cell_documents import CellDocuments
+from engine.editing.cells.naming_behaviors import NamingBehavior, behaviors_naming
 from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
@@ -97,6 +98,13 @@ class DocumentRepository:
     def referable(self) -> tuple[BehaviorReferenceView, ...]:
         """Return the behaviors of the project that others may reference, sorted by id."""
         return behavior_reference_views(self.library)
+
+    def naming(self, item: str) -> tuple[NamingBehavior, ...]:
+        """Return the saved behaviors for the open cell that name one of its items; none without a cell."""
+        if self.cell is None:
+            return ()
+        context = ProjectContext(self.catalogue, self._project, self._project)
+        return behaviors_naming(item, cell=self.cell, library=self.library, signature_of=context.signature)
 
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names of the open cell by kind, as the check knows them; none without a cell."""

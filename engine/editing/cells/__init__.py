@@ -4,6 +4,7 @@ from engine.editing.cells.cell_documents import CellDocumentName, CellDocuments,
 from engine.editing.cells.cell_draft import CellDraft, DraftItem
 from engine.editing.cells.cell_edit import AnyCellEdit
 from engine.editing.cells.cell_editing import CellEditAnswer
+from engine.editing.cells.naming_behaviors import NamingBehavior, behaviors_naming
 
 __all__ = [
     "AnyCellEdit",
@@ -12,5 +13,7 @@ __all__ = [
     "CellDraft",
     "CellEditAnswer",
     "DraftItem",
+    "NamingBehavior",
     "OpenedCellDocument",
+    "behaviors_naming",
 ]

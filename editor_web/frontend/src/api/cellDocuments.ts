@@ -3,7 +3,7 @@ import { queryOptions } from '@tanstack/react-query'
 import { addressOf } from '../document/path'
 import { call, post, sent } from './client'
 import { queryKeys } from './queryKeys'
-import type { CellDocumentBody, CellDocumentName, CellDraft, CellEditAnswer, CellEditsBody, SaveResultBody } from './types'
+import type { CellDocumentBody, CellDocumentName, CellDraft, CellEditAnswer, CellEditsBody, NamingBehavior, SaveResultBody } from './types'
 
 function at(id: string, rest = ''): string {
   return `/cell_documents/${addressOf(id)}${rest}`
@@ -24,5 +24,16 @@ export function cellDocumentsQuery(mayEdit: boolean) {
     queryKey: queryKeys.cellDocuments,
     queryFn: () => call<readonly CellDocumentName[]>('/cell_documents'),
     enabled: mayEdit,
+  })
+}
+
+/** The saved behaviors that name an item of the open cell; asked for where there is a name. */
+export function namingBehaviorsQuery(name: string) {
+  return queryOptions({
+    queryKey: queryKeys.namingBehaviors(name),
+    queryFn: () => call<readonly NamingBehavior[]>(`/cell/naming_behaviors?name=${encodeURIComponent(name)}`),
+    enabled: name !== '',
+    // Behaviors are saved all the time.
+    staleTime: 0,
   })
 }

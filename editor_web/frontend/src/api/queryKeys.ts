@@ -13,6 +13,7 @@ export const queryKeys = {
   cellItems: ['cell items'],
   cellDevices: ['cell devices'],
   cellDocuments: ['cell documents'],
+  namingBehaviors: (name: string) => ['naming behaviors', name] as const,
   names: (text: string) => ['names', text] as const,
   catalogue: ['catalogue'],
   stateSource: (state: string) => [...queryKeys.catalogue, 'source', state] as const,

@@ -1679,6 +1679,13 @@ export interface NameHit {
   readonly icon: string
 }
 
+/** A behavior that names an item of the cell: its id and name, and the nodes that do, empty for a declaration. */
+export interface NamingBehavior {
+  readonly id: string
+  readonly name: string
+  readonly paths: readonly string[]
+}
+
 /** A document to create from a template: machine, sequence or concurrency. */
 export interface NewDocumentBody {
   readonly id: string

@@ -40,6 +40,7 @@ const DRAFT: CellDraft = {
 beforeEach(async () => {
   server()
     .on(`GET /cell_documents/${ID}`, { id: ID, saved_at: 1, draft: DRAFT })
+    .on('GET /cell/naming_behaviors', [{ id: 'behaviors/move.yaml', name: 'move the plate', paths: ['root/a', 'root/b'] }])
     .on(EDITS, { draft: { ...DRAFT, text: 'b' }, refused: null })
   await openCellDocument(ID)
 })
@@ -74,7 +75,7 @@ it('applies what was changed, and only that', async () => {
 it('renames, says what does not follow, and selects the item by its new name', async () => {
   const { user, write, onSelect } = form()
   await write('Name', 'bench')
-  expect(screen.getByText(/Behaviors and taught entries that name table do not/)).toBeVisible()
+  expect(await screen.findByText(/neither do these behaviors: move the plate \(2\)/)).toBeVisible()
   await user.keyboard('{Enter}')
   await waitFor(() => expect(onSelect).toHaveBeenCalledExactlyOnceWith('fixtures/bench'))
   expect(server().bodies(EDITS)[0]).toMatchObject({ edits: [{ edit: 'rename_item', new_name: 'bench' }] })

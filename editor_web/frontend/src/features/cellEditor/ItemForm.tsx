@@ -4,6 +4,8 @@ import { IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { CommandButton } from '../../components/CommandButton'
 import { Refusal } from '../../components/Refusal'
+import { namingBehaviorsQuery } from '../../api/cellDocuments'
+import { useAnswer } from '../../api/queryClient'
 import type { DraftItem } from '../../api/types'
 import {
   editsBetween,
@@ -37,6 +39,7 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   const frames = useCellEditor((s) => draftOf(s).frames)
   const kind = useCellEditor((s) => draftOf(s).kind)
   const findings = useCellEditor((s) => draftOf(s).findings)
+  const { value: naming } = useAnswer(namingBehaviorsQuery(kind === 'cell' && newName !== name ? name : ''))
   const path = `${section}/${name}`
   const fields = fieldsFor(section, next, {
     ...surroundings,
@@ -90,8 +93,13 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
             onChange={(event) => setNewName(event.currentTarget.value)}
           />
           {newName !== name && (
-            <Text size="xs" c="dimmed">
-              All that names it in this document follows. Behaviors and taught entries that name {name} do not: search for it there.
+            <Text size="xs" c="dimmed" role="status">
+              All that names it in this document follows. Taught entries do not, and{' '}
+              {naming === undefined
+                ? 'behaviors neither.'
+                : naming.length === 0
+                  ? 'no saved behavior names it.'
+                  : `neither do these behaviors: ${naming.map((each) => `${each.name} (${each.paths.length})`).join(', ')}.`}
             </Text>
           )}
           {fields.map((field) => (
