@@ -17,7 +17,8 @@ from editor_web.http_bodies.document_bodies import ConflictBody, SaveBody, SaveR
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.cell import CellConnection, CellItems, DeviceDetails, devices_of_cell, items_of_cell
-from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer, NamingBehavior
+from engine.editing import ReferringBehavior
+from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 documents = WireRouter(
@@ -44,7 +45,7 @@ async def get_devices(services: ServicesOf) -> tuple[DeviceDetails, ...]:
 @router.get("/naming_behaviors")
 async def list_naming_behaviors(
     services: ServicesOf, name: Annotated[str, Query(min_length=1, max_length=200)]
-) -> tuple[NamingBehavior, ...]:
+) -> tuple[ReferringBehavior, ...]:
     """Return the saved behaviors for the open cell that name one of its items, or what stands on a module."""
     return await run_in_threadpool(services.documents.naming, name)
 

@@ -22,10 +22,11 @@ from engine.editing.analysis.data_flow import KeyFlow, data_flow
 from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.cells.cell_documents import CellDocuments
-from engine.editing.cells.naming_behaviors import NamingBehavior, behaviors_naming
+from engine.editing.cells.naming_behaviors import behaviors_naming
 from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
+from engine.editing.referring_behavior import ReferringBehavior
 from engine.editing.stored_document import (
     DocumentConflict,
     NoSuchDocument,
@@ -99,7 +100,7 @@ class DocumentRepository:
         """Return the behaviors of the project that others may reference, sorted by id."""
         return behavior_reference_views(self.library)
 
-    def naming(self, item: str) -> tuple[NamingBehavior, ...]:
+    def naming(self, item: str) -> tuple[ReferringBehavior, ...]:
         """Return the saved behaviors for the open cell that name one of its items; none without a cell."""
         if self.cell is None:
             return ()

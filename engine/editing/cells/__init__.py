@@ -4,7 +4,7 @@ from engine.editing.cells.cell_documents import CellDocumentName, CellDocuments,
 from engine.editing.cells.cell_draft import CellDraft, DraftItem
 from engine.editing.cells.cell_edit import AnyCellEdit
 from engine.editing.cells.cell_editing import CellEditAnswer
-from engine.editing.cells.naming_behaviors import NamingBehavior, behaviors_naming
+from engine.editing.cells.naming_behaviors import behaviors_naming
 
 __all__ = [
     "AnyCellEdit",
@@ -13,7 +13,6 @@ __all__ = [
     "CellDraft",
     "CellEditAnswer",
     "DraftItem",
-    "NamingBehavior",
     "OpenedCellDocument",
     "behaviors_naming",
 ]

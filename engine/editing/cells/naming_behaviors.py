@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-import msgspec
-
 from engine.document.cell import Cell
 from engine.editing.adaptation.name_uses import NameUses, SignatureOf
+from engine.editing.referring_behavior import ReferringBehavior
 from engine.errors import FlexcellError
 from engine.library.behavior_library import Library
 
 
-class NamingBehavior(msgspec.Struct, frozen=True, kw_only=True):
-    """A behavior that names an item of the cell: its id and name, and the nodes that do, empty for a declaration."""
-
-    id: str
-    name: str
-    paths: tuple[str, ...]
-
-
 def behaviors_naming(
     name: str, *, cell: Cell, library: Library, signature_of: SignatureOf
-) -> tuple[NamingBehavior, ...]:
+) -> tuple[ReferringBehavior, ...]:
     """Return the behaviors for this cell that name an item, or what stands on it if it is a module, by their ids.
 
     Args:
@@ -30,7 +21,7 @@ def behaviors_naming(
         signature_of: Returns the signature of a state by its name.
     """
     reader, file = NameUses(cell, signature_of), cell.file.resolve()
-    found: list[NamingBehavior] = []
+    found: list[ReferringBehavior] = []
     for view in library.views():
         try:
             behavior = library.behavior(view.id)
@@ -41,5 +32,5 @@ def behaviors_naming(
         uses = (use for use in reader.of(behavior) if use.name == name or use.name.startswith(f"{name}/"))
         paths = tuple(dict.fromkeys(use.path for use in uses))
         if paths:
-            found.append(NamingBehavior(id=view.id, name=view.name, paths=paths))
+            found.append(ReferringBehavior(id=view.id, name=view.name, paths=paths))
     return tuple(sorted(found, key=lambda each: each.id))

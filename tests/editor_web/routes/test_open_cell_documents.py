@@ -83,7 +83,7 @@ async def test_a_viewer_reads_and_changes_nothing(tmp_path: Path) -> None:
     assert (tmp_path / "behaviors" / "cells" / "bench.yaml").read_text() == CELL
 
 
-async def test_who_renames_an_item_is_told_which_behaviors_name_it(tmp_path: Path) -> None:
+async def test_behaviors_that_name_an_item_are_listed(tmp_path: Path) -> None:
     async with client(tmp_path, role="viewer") as http:
         answer = await http.get("/cell/naming_behaviors", params={"name": "plate"})
         assert (answer.status_code, answer.json()) == (200, [])

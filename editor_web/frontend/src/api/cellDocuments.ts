@@ -3,7 +3,15 @@ import { queryOptions } from '@tanstack/react-query'
 import { addressOf } from '../document/path'
 import { call, post, sent } from './client'
 import { queryKeys } from './queryKeys'
-import type { CellDocumentBody, CellDocumentName, CellDraft, CellEditAnswer, CellEditsBody, NamingBehavior, SaveResultBody } from './types'
+import type {
+  CellDocumentBody,
+  CellDocumentName,
+  CellDraft,
+  CellEditAnswer,
+  CellEditsBody,
+  ReferringBehavior,
+  SaveResultBody,
+} from './types'
 
 function at(id: string, rest = ''): string {
   return `/cell_documents/${addressOf(id)}${rest}`
@@ -31,7 +39,7 @@ export function cellDocumentsQuery(mayEdit: boolean) {
 export function namingBehaviorsQuery(name: string) {
   return queryOptions({
     queryKey: queryKeys.namingBehaviors(name),
-    queryFn: () => call<readonly NamingBehavior[]>(`/cell/naming_behaviors?name=${encodeURIComponent(name)}`),
+    queryFn: () => call<readonly ReferringBehavior[]>(`/cell/naming_behaviors?name=${encodeURIComponent(name)}`),
     enabled: name !== '',
     // Behaviors are saved all the time.
     staleTime: 0,

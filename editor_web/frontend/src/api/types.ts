@@ -1679,13 +1679,6 @@ export interface NameHit {
   readonly icon: string
 }
 
-/** A behavior that names an item of the cell: its id and name, and the nodes that do, empty for a declaration. */
-export interface NamingBehavior {
-  readonly id: string
-  readonly name: string
-  readonly paths: readonly string[]
-}
-
 /** A document to create from a template: machine, sequence or concurrency. */
 export interface NewDocumentBody {
   readonly id: string
@@ -2220,7 +2213,7 @@ export interface RecordingFile {
 export interface RecoveryStepBody {
 }
 
-/** A behavior that references another one: its id and name, and the referencing nodes. */
+/** A behavior that references another one, or names an item of its cell: its id and name, and the nodes that do. */
 export interface ReferringBehavior {
   readonly id: string
   readonly name: string
