@@ -15,8 +15,9 @@ from robots.arm.arm_server import ArmServer
 from robots.arm.services.input_services import InputServices
 from robots.arm.services.numbered_signals import require_signals
 from robots.arm.services.output_services import OutputServices
+from robots.scene.docked_scene import with_modules
 from robots.scene.scene_builder import build_scene
-from robots.scene.sim_scene import ArmPlacement, SimScene
+from robots.scene.sim_scene import ArmPlacement
 from robots.sim.host.process_host import NewStopLine
 from robots.sim.world.sim_robot import SimRobot
 from robots.sim.world.sim_world import SimWorld
@@ -50,13 +51,13 @@ def new_world(
             where=cell.source.position(("robots", driven[0], "driver")),
             hint="remove `separation`, and use the safety functions of the controller",
         )
-    scene = build_scene(cell.document, seed=seed, resolve=cell.resolve)
+    scene = with_modules(build_scene(cell.document, seed=seed, resolve=cell.resolve), cell)
     scene = replace(scene, separation=rule, arms=tuple(_with_signals(cell, arm) for arm in scene.arms))
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
         workspace = Workspace(
-            partial(_live_scene, scene, world),
+            partial(_live_scene, world),
             planners=PlanningServices(bus.clock),
             clock=bus.clock,
             occupancy=cameras if cell.document.occupancy is not None else None,
@@ -65,6 +66,9 @@ def new_world(
         arms = tuple(
             _arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms if not placement.driven
         )
+        if cameras is not None:
+            world.modules.watch(cameras.take_scene)
+        world.modules.watch(workspace.take_scene)
         devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
         if rule is not None and cameras is not None:
             look = WorldPoseReader(world, scene)
@@ -73,13 +77,14 @@ def new_world(
             )
         return (*devices, *arms)
 
-    return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line)
+    return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line, cell=cell)
 
 
-def _live_scene(scene: SimScene, world: SimWorld) -> LiveScene:
+def _live_scene(world: SimWorld) -> LiveScene:
     # Imported here, so that Coal is loaded only when a scene is needed, not by every cell that is opened.
     from robots.planning.scene.cell_planning_scene import planning_scene
 
+    scene = world.modules.scene
     parts = tuple(part.name for part in scene.parts)
     return LiveScene(planning_scene(scene), parts=parts, look=WorldPoseReader(world, scene))
 
@@ -95,7 +100,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
         outputs=_outputs(cell, world, placement),
         inputs=_inputs(cell, world, placement),
-        frames=cell.document.fixed_frames,
+        frames=world.modules.frames,
         workspace=workspace,
     )
 

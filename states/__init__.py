@@ -14,7 +14,9 @@ from states.bus.wait_for_message import WaitForMessage
 from states.calibration.four_point_tool import FourPointTool
 from states.calibration.three_point_frame import ThreePointFrame
 from states.cell.expect_part import ExpectPart
+from states.cell.plug_module import PlugModule
 from states.cell.reach import Reach
+from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
 from states.flow.decide import Decide
 from states.flow.log import Log
@@ -105,6 +107,7 @@ _STATES: tuple[type[State], ...] = (
     PickPart,
     PlacePart,
     PlanMotion,
+    PlugModule,
     PressAlongDmp,
     Publish,
     PutObstacle,
@@ -125,6 +128,7 @@ _STATES: tuple[type[State], ...] = (
     SetToolFrame,
     SetValue,
     ThreePointFrame,
+    UnplugModule,
     Wait,
     WaitForMessage,
     Withdraw,

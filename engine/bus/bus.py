@@ -56,11 +56,21 @@ class BusEntry:
     detail: str
 
 
-class SkillBus:
-    """Connects states and robots by name."""
+class _TookTooLong(Exception):
+    """A service has not answered in time."""
 
-    def __init__(self, clock: Clock) -> None:
+
+class SkillBus:
+    """Connects states and robots by name.
+
+    Args:
+        clock: Its time.
+        service_timeout_s: The time within which a service answers; None to wait for as long as it takes.
+    """
+
+    def __init__(self, clock: Clock, *, service_timeout_s: float | None = None) -> None:
         self.clock = clock
+        self._service_timeout_s = service_timeout_s
         self.leases = LeaseTable(now_s=clock.now_s)
         self.parameters = ParameterServer()
         self._loop = asyncio.get_running_loop()
@@ -194,7 +204,7 @@ class SkillBus:
         Raises:
             NoSuchSkill: there is no such service.
             LeaseRefused: the service commands a resource held by another holder.
-            SkillFailed: the handler failed; its error is the cause.
+            SkillFailed: the handler failed, its error is the cause; or it took longer than services may.
         """
         address = request.address(to)
         server = self._services.get(address)
@@ -205,12 +215,29 @@ class SkillBus:
             self.leases.refuse_foreign(server.commands, holder)
         try:
             response = server.handler(request)
-            return cast("R", await response if inspect.isawaitable(response) else response)
+            if inspect.isawaitable(response):
+                response = await (response if self._service_timeout_s is None else self._in_time(response))
+            return cast("R", response)
         except FlexcellError:
             raise
+        except _TookTooLong as error:
+            raise SkillFailed(
+                f"the service has not answered within {self._service_timeout_s:g} s",
+                where=address,
+                hint="see what it waits for, or set a longer `service_timeout_s` of the `bus` of the cell",
+            ) from error
         except Exception as error:
             # A handler may raise anything; the caller gets one type of error with its cause.
             raise SkillFailed(f"the service raised {type(error).__name__}: {error}", where=address) from error
+
+    async def _in_time(self, response: Awaitable[object]) -> object:
+        limit = asyncio.timeout(self._service_timeout_s)
+        try:
+            async with limit:
+                return await response
+        except TimeoutError as error:
+            # One of the handler itself is its own failure.
+            raise _TookTooLong if limit.expired() else error from error
 
     def send_goal(
         self, goal: Action[R, F], *, to: str, holder: Holder = ANONYMOUS_HOLDER, goal_id: str = ""

@@ -18,6 +18,7 @@ from engine.cell.robot_models import tool_kinds
 from engine.document.cell import Cell
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
+from engine.skills.modules import MODULES_TOPIC
 
 ItemKind = Literal[
     "robot", "tool", "module", "fixture", "part", "frame", "camera", "person", "occupancy", "world", "store"
@@ -191,7 +192,9 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith("cell/occupancy"))
         case "world":
             return tuple(each for each in known if each in ("cell/frames", "cell/planning_scene"))
-        case "module" | "fixture" | "frame" | "person" | "store":
+        case "module":
+            return tuple(each for each in known if each == MODULES_TOPIC)
+        case "fixture" | "frame" | "person" | "store":
             return ()
 
 

@@ -25,7 +25,7 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
-    "body", "obstacle", "scene_part", "planner", "topic", "bus_topic", "skill",
+    "body", "obstacle", "scene_part", "module", "connector", "planner", "topic", "bus_topic", "skill",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an
@@ -170,6 +170,8 @@ def cell_names(cell: Cell) -> CellNames:
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,
+        "module": frozenset(document.modules),
+        "connector": frozenset(document.connectors),
     }
     if kinds:
         found["tool"] = frozenset(f"{name}/{kind}" for name, possible in tools.items() for kind in possible)

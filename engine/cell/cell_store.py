@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.document.cell import Cell, MongoStoreSpec
+from engine.document.cell import Cell
+from engine.document.cell_store_spec import MongoStoreSpec
 from engine.errors import CellError
 from engine.store import Store, open_store
 from engine.store.mongo.mongo_address import is_mongo_address, public_address

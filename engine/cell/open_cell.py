@@ -64,7 +64,7 @@ class OpenCell:
     ) -> None:
         self.document = cell
         self.seed = seed
-        self.bus = SkillBus(new_clock())
+        self.bus = SkillBus(new_clock(), service_timeout_s=cell.document.bus.service_timeout_s if cell else None)
         self.store: Store | None = None
         self.robots: Mapping[str, Robot] = {}
         self.tools: Mapping[str, Robot] = {}

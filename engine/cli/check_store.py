@@ -9,7 +9,8 @@ from engine.cell.cell_store import open_cell_store
 from engine.check import names_by_kind
 from engine.cli.store_access import require_file
 from engine.document import Behavior
-from engine.document.cell import MongoStoreSpec, load_cell
+from engine.document.cell import load_cell
+from engine.document.cell_store_spec import MongoStoreSpec
 from engine.document.entries_document import load_entries
 from engine.errors import DocumentError
 from engine.store import Store, open_store

@@ -24,6 +24,7 @@ from engine.document.cell_perception import (
     UnknownSpacePolicy,
     arm_reach_m,
 )
+from engine.document.docking import cell_as_docked, cell_at_start, docks_at_start, modules_below
 from engine.document.expression.expression import Template, compile_template
 from engine.document.loader import (
     BehaviorSurvey,
@@ -97,12 +98,16 @@ __all__ = [
     "any_value",
     "arm_reach_m",
     "bind_parameters",
+    "cell_as_docked",
+    "cell_at_start",
     "compile_template",
     "decode_document",
+    "docks_at_start",
     "load_behavior",
     "load_cell",
     "load_module",
     "load_source",
+    "modules_below",
     "parse_behavior",
     "parse_source",
     "read_behavior",

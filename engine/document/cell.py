@@ -7,7 +7,6 @@ Lengths are in metres, angles in radians, masses in kilograms. Paths are relativ
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,9 +16,17 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
-from engine.document.cell_frames import FrameSpec, poses_in_world, require_frames
-from engine.document.cell_modules import ModuleSpec, docked, load_modules, with_positions
+from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
+from engine.document.cell_modules import (
+    ModuleSpec,
+    docked,
+    load_modules,
+    module_below,
+    require_plugged,
+    with_positions,
+)
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
+from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name, Placement
@@ -29,29 +36,6 @@ from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 from engine.messages import Pose
-
-
-class SqliteStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
-    """Named entries in a file; `seed` is an entries document with initial values of missing entries."""
-
-    path: Annotated[str, Meta(min_length=1, description="Database file, relative to the current directory")]
-    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
-
-
-class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
-    """Named entries on a MongoDB server; `seed` is an entries document with initial values of missing entries.
-
-    `${NAME}` in `uri` is replaced by an environment variable, for example the password.
-    """
-
-    uri: Annotated[
-        str, Meta(pattern=r"^(mongodb(\+srv)?://|\$\{)", description="For example `mongodb://127.0.0.1:27017`")
-    ]
-    database: Annotated[str, Meta(pattern="^[A-Za-z0-9_-]{1,63}$", description="Database name on the server")] = (
-        "flexcell"
-    )
-    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
-
 
 RealismName = Literal["ideal", "typical", "poor"]
 
@@ -79,6 +63,14 @@ class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag=
     ] = 180.0
 
 
+class BusLimits(StrictModel, frozen=True, kw_only=True):
+    """Limits of the skill bus."""
+
+    service_timeout_s: (
+        Annotated[float, Meta(gt=0.0, description="Seconds within which services answer; others have failed")] | None
+    ) = None
+
+
 TopicName = Annotated[
     str, Meta(pattern="^[a-z][a-z0-9_]*(/[a-z0-9_]+)+$", max_length=128, description="Such as `operator/key`")
 ]
@@ -91,6 +83,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     cell: Name
     description: str = ""
     store: SqliteStoreSpec | MongoStoreSpec | None = None
+    bus: BusLimits = BusLimits()
     world: MujocoWorld | None = None
     robots: dict[Name, RobotSpec] = {}
     fixtures: dict[Name, Fixture] = {}
@@ -146,7 +139,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
         parts, cameras = dict(self.parts), dict(self.cameras)
         for name, module in modules.items():
-            added = docked(name, module.document, connector=self.modules[name].connector)
+            added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
             frames |= added.frames
             fixtures |= added.fixtures
             parts |= added.parts
@@ -181,10 +174,12 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 class Cell(DocumentFile[CellDocument]):
     """A cell document with its file, and with everything that stands on its modules.
 
-    `modules` are their documents. `simulated` are devices whose drivers the simulation replaces, with these.
+    `modules` are their documents; `carried` says, by module, what of the cell document itself stands on it and is no
+    part: `robot arm`. `simulated` are devices whose drivers the simulation replaces, with these.
     """
 
     modules: Mapping[str, Module] = field(default_factory=dict[str, Module])
+    carried: Mapping[str, str] = field(default_factory=dict[str, str])
     simulated: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
@@ -223,14 +218,14 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     Raises:
         DocumentError: as `load_cell`.
     """
-    document = decode_document(source, CellDocument, refused=_REFUSED)
+    document = written = decode_document(source, CellDocument, refused=_REFUSED)
     modules: dict[str, Module] = {}
     if document.modules or document.connectors:
         _require_free_names(document, source)
         connectors = document.connectors
         modules = load_modules(document.modules, connectors=connectors, source=source, folder=file.parent)
         document, source = document.with_modules(modules), with_positions(source, modules)
-    _require_no_secret(document, source)
+    require_no_secret(document.store, source)
     require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
     _require_drivers(document, source)
     _require_world(document, source)
@@ -241,25 +236,26 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
-    return Cell(document=document.in_world(), file=file, source=source, modules=modules)
+    carried = _items_on_modules(written, document, source, modules) if modules else {}
+    return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried)
 
 
-_LATER = "remove it"
-_REFUSED = {"bus": _LATER, "calibration": _LATER}
+def _items_on_modules(
+    written: CellDocument, joined: CellDocument, source: DocumentSource, modules: Mapping[str, Module]
+) -> dict[str, str]:
+    """Return what of the cell document stands on each module, without parts."""
+    fixtures = [(("fixtures", name, "at", "frame"), one.at.frame) for name, one in written.fixtures.items()]
+    uses: list[tuple[DataPath, str]] = [*written.uses_of_frames(), *fixtures]
+    frames: dict[str, str] = {"world": ""}
+    for _, frame in (*uses, *(((), name) for name in written.connectors)):
+        frames[frame] = module_below(frame, modules=modules, frames=joined.frames, fixtures=joined.fixtures)
+    resting = [(path, frames[frame]) for path, frame in uses if frames[frame]]
+    below = {name: frames[name] for name in written.connectors if frames[name]}
+    require_plugged(written.modules, modules, source, resting=resting, below=below)
+    return {module: f"{str(path[0])[:-1]} {path[1]}" for path, module in resting if path[0] != "parts"}
 
 
-# A password between `:` and `@` that is not an environment variable.
-_SECRET = re.compile(r"://[^@/:]*:(?!\$\{\w+\}@)[^@/]*@")
-
-
-def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
-    store = document.store
-    if isinstance(store, MongoStoreSpec) and _SECRET.search(store.uri):
-        raise DocumentError(
-            "the `uri` of the store contains a password",
-            where=source.position(("store", "uri")),
-            hint="write ${NAME} instead and set that environment variable: mongodb://user:${NAME}@host",
-        )
+_REFUSED = {"calibration": "give it to the robot: `robots: {NAME: {calibration: FILE}}`"}
 
 
 def _require_free_names(document: CellDocument, source: DocumentSource) -> None:

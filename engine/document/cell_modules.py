@@ -6,7 +6,7 @@ frame of the module, which stands at its connector.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +19,7 @@ from engine.document.cell_perception import DepthCamera
 from engine.document.module_document import Module, ModuleDocument, load_module
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel
-from engine.document.text.yaml_source import DocumentSource, PositionTree
+from engine.document.text.yaml_source import DataPath, DocumentSource, PositionTree
 from engine.errors import DocumentError
 from engine.wording import did_you_mean
 
@@ -27,10 +27,13 @@ _SECTIONS = ("frames", "fixtures", "parts", "cameras")
 
 
 class ModuleSpec(StrictModel, frozen=True, kw_only=True):
-    """A module that is docked in the cell."""
+    """A module of the cell: what stands on it has names in the cell, also while it is not plugged."""
 
     module: Annotated[str, Meta(min_length=1, description="Folder of its `module.yaml`, relative to this document")]
-    connector: Annotated[Name, Meta(description="The connector that it is docked to")]
+    connector: Annotated[
+        Name | None, Meta(description="The connector that it is docked to, or is plugged to if none is named then")
+    ] = None
+    plugged: Annotated[bool, Meta(description="Whether it is docked when the cell is opened")] = True
 
 
 class DockedModule(StrictModel, frozen=True, kw_only=True):
@@ -52,10 +55,20 @@ def load_modules(
     """
     docked: dict[str, str] = {}
     for name, spec in modules.items():
+        if spec.connector is None:
+            if spec.plugged:
+                raise DocumentError(
+                    f"module `{name}` is docked to no connector",
+                    where=source.position(("modules", name), of_key=True),
+                    hint="add `connector:`, or `plugged: false` for a module that is plugged later",
+                )
+            continue
         where = source.position(("modules", name, "connector"))
         if spec.connector not in connectors:
             hint = did_you_mean(spec.connector, connectors) if connectors else "add `connectors:`"
             raise DocumentError(f"the cell has no connector `{spec.connector}`", where=where, hint=hint)
+        if not spec.plugged:
+            continue
         if spec.connector in docked:
             raise DocumentError(
                 f"`{docked[spec.connector]}` and `{name}` are docked to the same connector",
@@ -109,6 +122,64 @@ def docked(name: str, document: ModuleDocument, *, connector: str) -> DockedModu
         },
         cameras={named(key): camera(one) for key, one in document.cameras.items()},
     )
+
+
+def module_below(
+    frame: str, *, modules: Iterable[str], frames: Mapping[str, FrameSpec], fixtures: Mapping[str, Fixture]
+) -> str:
+    """Return the module on which a frame of the cell stands, or whose frame it is; empty for none.
+
+    The frames lead to the world, as `require_frames` requires.
+    """
+    while frame != WORLD:
+        module = frame.partition("/")[0]
+        if module in modules:
+            return module
+        frame = frames[frame].parent if frame in frames else fixtures[frame].at.frame
+    return ""
+
+
+def require_plugged(
+    modules: Mapping[str, ModuleSpec],
+    loaded: Mapping[str, Module],
+    source: DocumentSource,
+    *,
+    resting: Iterable[tuple[DataPath, str]],
+    below: Mapping[str, str],
+) -> None:
+    """Require that nothing of the cell stands on a module that is not plugged when the cell is opened.
+
+    Args:
+        modules: The modules.
+        loaded: Their documents.
+        source: The document of the cell.
+        resting: What of the cell stands on modules, each by its path with the module.
+        below: The module below each connector that is on a module.
+
+    Raises:
+        DocumentError: something does, or such a module carries cameras.
+    """
+    for name, spec in modules.items():
+        if spec.plugged or not loaded[name].document.cameras:
+            continue
+        raise DocumentError(
+            f"module `{name}` carries cameras, and such a module cannot be plugged while the cell is open",
+            where=source.position(("modules", name, "plugged"), of_key=True),
+            hint="remove `plugged: false`, or the cameras of the module",
+        )
+    waiting = {name for name, spec in modules.items() if not spec.plugged}
+    docked_on: list[tuple[DataPath, str]] = [
+        (("modules", name, "connector"), below[spec.connector])
+        for name, spec in modules.items()
+        if spec.plugged and spec.connector is not None and spec.connector in below
+    ]
+    for path, module in (*docked_on, *resting):
+        if module in waiting:
+            raise DocumentError(
+                f"`{path[1]}` stands on module `{module}`, which is not plugged when the cell is opened",
+                where=source.position(path),
+                hint=f"plug `{module}` from the start, or place `{path[1]}` elsewhere",
+            )
 
 
 def with_positions(source: DocumentSource, modules: Mapping[str, Module]) -> DocumentSource:

@@ -58,17 +58,29 @@ class FoxgloveSceneEntity(msgspec.Struct, frozen=True, kw_only=True):
     triangles: tuple[FoxgloveTriangles, ...] = ()
 
 
+class FoxgloveSceneEntityDeletion(msgspec.Struct, frozen=True, kw_only=True):
+    """`foxglove.SceneEntityDeletion`; `type` 1 deletes all entities before the timestamp."""
+
+    timestamp: FoxgloveTime
+    type: int = 1
+    id: str = ""
+
+
 class FoxgloveSceneUpdate(msgspec.Struct, frozen=True, kw_only=True):
     """`foxglove.FoxgloveSceneUpdate`."""
 
+    deletions: tuple[FoxgloveSceneEntityDeletion, ...]
     entities: tuple[FoxgloveSceneEntity, ...]
 
 
 def scene_update(scene: SceneDescription, at_ns: int) -> FoxgloveSceneUpdate:
-    """Return the scene of the 3D panel, without bodies for which Foxglove has no primitive."""
+    """Return the scene of the 3D panel, without bodies for which Foxglove has no primitive; it replaces all before."""
     stamp = time_of(at_ns)
     entities = (_entity(body, stamp) for body in scene.geometries)
-    return FoxgloveSceneUpdate(entities=tuple(entity for entity in entities if entity is not None))
+    return FoxgloveSceneUpdate(
+        deletions=(FoxgloveSceneEntityDeletion(timestamp=stamp),),
+        entities=tuple(entity for entity in entities if entity is not None),
+    )
 
 
 def _entity(body: VisualGeometry, stamp: FoxgloveTime) -> FoxgloveSceneEntity | None:

@@ -115,6 +115,19 @@ class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
         return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)
 
 
+class ModuleBodies(msgspec.Struct, frozen=True, kw_only=True):
+    """The bodies of one module by their names in the scene, whose poses hold for the module's frame at `at`.
+
+    While it is not `plugged` at the start, none of them is in the world.
+    """
+
+    name: str
+    at: Pose
+    plugged: bool = True
+    fixtures: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+
+
 class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     """The complete description of a simulated world; equal scenes give equal worlds, bit for bit.
 
@@ -124,6 +137,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     The unknown bodies are in the physics and in images of cameras, but in no planning scene and among no parts.
     With `separation` the speed of all arms follows their measured distance from people.
     The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
+    The bodies of all `modules` are in it, plugged or not: a world is built once, and modules come and go in it.
     """
 
     step_s: float = 0.001
@@ -141,3 +155,4 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     unknown_fixtures: tuple[FixtureBody, ...] = ()
     unknown_parts: tuple[PartBody, ...] = ()
     separation: SeparationRule | None = None
+    modules: tuple[ModuleBodies, ...] = ()

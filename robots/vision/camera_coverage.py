@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.cell import CameraCoverage, RegionCoverage
-from engine.document import Cell
+from engine.document import Cell, cell_at_start
 from engine.errors import CellError
 from engine.messages import Vector3
 from engine.messages.sensing import DepthImage, ObservedSpace
@@ -36,7 +36,7 @@ def camera_coverage(cell: Cell) -> CameraCoverage:
         CellError: the cell has no cameras or no map, cannot be simulated, or a camera is invalid.
         DocumentError: a model folder or a calibration file is invalid.
     """
-    document = cell.document
+    document = cell_at_start(cell)
     if document.occupancy is None or not document.cameras:
         raise CellError(
             "the cell has no cameras with an occupancy map", where=document.cell, hint="add `cameras:` and `occupancy:`"

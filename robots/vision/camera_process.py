@@ -60,6 +60,11 @@ class CameraProcess:
         if self._worker is not None and not self._worker.lost_reason:
             self._worker.send(known)
 
+    def change(self, setup: PerceptionSetup) -> None:
+        """Take the fixtures and detectors of a setup from the next image on; a lost process does not hear it."""
+        if self._worker is not None and not self._worker.lost_reason:
+            self._worker.send(setup)
+
     async def look(self, request: PerceptionRequest) -> PerceptionResult:
         """Return the result.
 

@@ -55,7 +55,7 @@ def _serve(mailbox: _Mailbox) -> None:
             case PerceptionRequest():
                 mailbox.send(_answer(rig, message), number=number)
             case PerceptionSetup():
-                return
+                rig.change(message)
 
 
 def _answer(rig: CameraRig, request: PerceptionRequest) -> PerceptionResult | RequestFailure:

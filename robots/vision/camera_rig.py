@@ -47,7 +47,7 @@ class CameraRig:
         self._health = self._new_health()
         self._detector = PartDetector(self._cell, setup.scene.parts, seed=setup.seed)
         self._mapper = _new_mapper(setup)
-        self.know(KnownGeometry(obstacles=known_obstacles(setup.scene)))
+        self.know(KnownGeometry(obstacles=known_obstacles(setup.present)))
 
     @property
     def words(self) -> str:
@@ -58,6 +58,12 @@ class CameraRig:
         """Exclude these obstacles and held parts from the next image on."""
         if self._mapper is not None:
             self._mapper.know(known)
+
+    def change(self, setup: PerceptionSetup) -> None:
+        """Take the fixtures and the frames of detectors as they are from the next image on."""
+        self._setup = setup
+        self._cameras = {camera.name: camera for camera in setup.cameras}
+        self._health = self._new_health()
 
     def look(self, look: PerceptionRequest) -> PerceptionResult:
         """Render the images, update the map and detect objects.
@@ -120,8 +126,8 @@ class CameraRig:
         return tuple(self._health[name].judge(image, balls, now_s=moment.time_s) for name, image in shown.items())
 
     def _new_health(self) -> dict[str, CameraHealth]:
-        bodies = {fixture.name for fixture in self._setup.scene.fixtures if fixture.spring_n_m == 0.0}
-        fixtures = [one for one in known_obstacles(self._setup.scene) if one.name in bodies]
+        bodies = {fixture.name for fixture in self._setup.present.fixtures if fixture.spring_n_m == 0.0}
+        fixtures = [one for one in known_obstacles(self._setup.present) if one.name in bodies]
         return {
             name: CameraHealth(camera, ExpectedView(camera, self._depth.intrinsics(camera), fixtures))
             for name, camera in self._cameras.items()

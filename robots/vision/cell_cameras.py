@@ -35,6 +35,7 @@ def cell_cameras(
         box=voxel_box(document.occupancy) if document.occupancy is not None else None,
         observes=document.occupancy is not None and document.occupancy.unknown_space_policy != "accept",
         seed=seed or 0,
+        fixtures=world.modules.scene.fixtures,
     )
     if isinstance(world.host, LockstepHost):
         return LockstepPerception(setup, world=world)

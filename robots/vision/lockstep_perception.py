@@ -22,6 +22,8 @@ class _CameraRig(Protocol):
 
     def know(self, known: KnownGeometry) -> None: ...
 
+    def change(self, setup: PerceptionSetup) -> None: ...
+
     def look(self, look: PerceptionRequest) -> PerceptionResult: ...
 
     def close(self) -> None: ...
@@ -43,7 +45,7 @@ class LockstepPerception(PerceptionDevice):
         self._later = max(1, round(PROCESSING_S / step_s))
         self._coming: tuple[int, PerceptionResult] | None = None
         self._eye: _CameraRig | None = None
-        self._sent_known = self.known
+        self._sent_known, self._sent_setup = self.known, setup
         world.each_step(self._after_step, busy=lambda: self.needed or self._coming is not None)
 
     async def __aenter__(self) -> Self:
@@ -91,8 +93,11 @@ class LockstepPerception(PerceptionDevice):
             # Imported here: it loads the compiled kernels and coal.
             from robots.vision.camera_rig import CameraRig
 
-            self._eye = CameraRig(self.setup, repeatable=True)
+            self._eye, self._sent_setup = CameraRig(self.setup, repeatable=True), self.setup
             self.set_rendering(self._eye.words)
+        if self.setup is not self._sent_setup:
+            self._eye.change(self.setup)
+            self._sent_setup = self.setup
         if self.known is not None and self.known is not self._sent_known:
             self._eye.know(self.known)
             self._sent_known = self.known

@@ -22,8 +22,9 @@ from engine.skills.simulated_world import CameraFault, SetCameraFault, SetCamera
 from engine.wording import did_you_mean
 from robots.planning.scene.planning_scene import PlanningScene
 from robots.port import GraspCommand
+from robots.scene.sim_scene import SimScene
 from robots.sim.world.sim_world import SimWorld
-from robots.vision.cameras.camera import CameraSpec
+from robots.vision.cameras.camera import CameraSpec, camera_of
 from robots.vision.detection.detection_service import DetectionService
 from robots.vision.known_geometry import KnownGeometry
 from robots.vision.occupancy.occupancy_map import LiveOccupancyMap
@@ -124,6 +125,19 @@ class PerceptionDevice:
         known = KnownGeometry.of(scene)
         if known != self.known:
             self.known = known
+
+    def take_scene(self, scene: SimScene) -> None:
+        """Take what is in the world from the next image on."""
+        document = self._world.modules.document
+        cameras = document.cameras if document is not None else {}
+        self.setup = msgspec.structs.replace(
+            self.setup,
+            fixtures=scene.fixtures,
+            cameras=tuple(
+                camera_of(each.name, cameras[each.name]) if each.name in cameras else each
+                for each in self.setup.cameras
+            ),
+        )
 
     # Interface of the image producers.
 

@@ -8,7 +8,7 @@ from engine.messages.sensing import CameraStatus, DepthImage, ObservedSpace, Occ
 from engine.skills.simulated_world import CameraFault
 from engine.skills.vision import Detections
 from robots.port import Array
-from robots.scene.sim_scene import SimScene
+from robots.scene.sim_scene import FixtureBody, SimScene
 from robots.vision.cameras.camera import CameraSpec
 from robots.vision.voxel_box import VoxelBox
 
@@ -16,7 +16,8 @@ from robots.vision.voxel_box import VoxelBox
 class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True, tag="setup"):
     """A simulated cell with its cameras; `seed` is that of the noise.
 
-    `box` is the mapped box, None without a map. `observes` says that motions ask which space is unknown.
+    `box` is the mapped box, None without a map. `observes` says that motions ask which space is unknown. `fixtures` are
+    those that are in the world now, None for all of the scene; a setup with others replaces an earlier one.
     """
 
     scene: SimScene
@@ -24,6 +25,12 @@ class PerceptionSetup(msgspec.Struct, frozen=True, kw_only=True, tag="setup"):
     box: VoxelBox | None
     observes: bool = False
     seed: int = 0
+    fixtures: tuple[FixtureBody, ...] | None = None
+
+    @property
+    def present(self) -> SimScene:
+        """The scene with the fixtures that are in the world now."""
+        return self.scene if self.fixtures is None else msgspec.structs.replace(self.scene, fixtures=self.fixtures)
 
 
 class PerceptionRequest(msgspec.Struct, frozen=True, kw_only=True, tag="look"):

@@ -28,6 +28,7 @@ class RealTimePerception(PerceptionDevice):
     def __init__(self, setup: PerceptionSetup, *, world: SimWorld) -> None:
         super().__init__(setup, world=world, now_s=lambda: asyncio.get_running_loop().time())
         self._process = CameraProcess()
+        self._sent_setup = setup
         self._task: asyncio.Task[None] | None = None
         self._fastest_s = min(1.0 / camera.rate_hz for camera in setup.cameras)
         self._due_s = dict.fromkeys((camera.name for camera in setup.cameras), 0.0)
@@ -59,7 +60,8 @@ class RealTimePerception(PerceptionDevice):
         pause_s = _FIRST_PAUSE_S
         while True:
             try:
-                await self._process.start(self.setup)
+                self._sent_setup = self.setup
+                await self._process.start(self._sent_setup)
                 self.set_rendering(self._process.words)
                 self._has_started()
                 self.restart_revisions()
@@ -86,6 +88,9 @@ class RealTimePerception(PerceptionDevice):
             self.map.notify()
             if not self.needed:
                 continue
+            if self.setup is not self._sent_setup:
+                self._sent_setup = self.setup
+                self._process.change(self.setup)
             if self.known is not None and self.known is not sent:
                 sent = self.known
                 self._process.know(sent)

@@ -62,6 +62,26 @@ class LiveScene:
         self._reservations: dict[str, tuple[Row, ...]] = {}
         self.revision = 0
 
+    def take_base(self, obstacles: tuple[Obstacle, ...], *, parts: Collection[str]) -> frozenset[str]:
+        """Replace the fixtures and parts of the cell; return the names of all that came, went or moved.
+
+        What is known of those that went is forgotten: they come back as new.
+        """
+        before = {one.name: one for one in self._base.obstacles}
+        now = {one.name: one for one in obstacles}
+        gone = before.keys() - now.keys()
+        changed = gone | {name for name, one in now.items() if before.get(name) != one}
+        self._base, self._parts = msgspec.structs.replace(self._base, obstacles=obstacles), frozenset(parts)
+        self._tracked.forget(gone)
+        self._removed -= changed
+        for name in changed:
+            self._put.pop(name, None)
+        for name in gone:
+            self._held.pop(name, None)
+            self._let_go.pop(name, None)
+        self.revision += 1
+        return frozenset(changed)
+
     @property
     def arms(self) -> int:
         """Number of arms."""

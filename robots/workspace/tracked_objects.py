@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from engine.messages import Pose
@@ -28,6 +29,12 @@ class TrackedObjects:
         parts = frozenset(name for name, pose in measured.parts.items() if self._update_part(name, pose))
         arms = frozenset(name for name, arm in measured.arms.items() if self._update_arm(name, arm))
         return parts, arms
+
+    def forget(self, parts: Iterable[str]) -> None:
+        """Forget parts that are no longer in the cell."""
+        for name in parts:
+            self._rigid.pop(name, None)
+            self.parts.pop(name, None)
 
     def _update_part(self, name: str, pose: RigidTransform) -> bool:
         old = self._rigid.get(name)

@@ -29,19 +29,17 @@ from engine.skills.planning_scene import (
 )
 from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
 from robots.port import GraspCommand
+from robots.scene.sim_scene import SimScene
 from robots.vision.occupancy.occupancy_source import OccupancySource
 from robots.workspace.collision_reports import collision_report
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
+from robots.workspace.occupancy_freshness import wait_until_fresh
 from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices
 from robots.workspace.unknown_space import UnknownSpaceRule, describe_unhealthy
 
 LOOK_S = 0.05
 """Period of the measurements while there are listeners."""
-
-_FRESH_S = 3.0
-_STARTED_S = 120.0
-"""Longest start of the cameras: on a new machine all kernels are compiled first."""
 
 ChangeListener = Callable[[frozenset[str]], None]
 _log = logging.getLogger("flexcell.workspace")
@@ -81,6 +79,7 @@ class Workspace:
         self._live: LiveScene | None = None
         self._making = asyncio.Lock()
         self._early_memo = SceneMemo()
+        self._cell_scene: SimScene | None = None
         self.planners = planners
         self._clock = clock
         self._occupancy = occupancy
@@ -192,28 +191,8 @@ class Workspace:
         Raises:
             RobotError: the occupancy is not valid in time; the message gives the reason.
         """
-        source = self._occupancy
-        if source is None or not source.stale_reason:
-            return
-        changed = asyncio.Event()
-        unsubscribe = source.subscribe(changed.set)
-        try:
-            async with asyncio.timeout(_STARTED_S):
-                while source.starting and source.stale_reason:
-                    await changed.wait()
-                    changed.clear()
-            async with asyncio.timeout(_FRESH_S):
-                while source.stale_reason:
-                    await changed.wait()
-                    changed.clear()
-        except TimeoutError:
-            raise RobotError(
-                f"the occupancy map is not valid: {source.stale_reason}",
-                where=OCCUPANCY,
-                hint="check the cameras, then try again",
-            ) from None
-        finally:
-            unsubscribe()
+        if self._occupancy is not None:
+            await wait_until_fresh(self._occupancy)
 
     def watch(self, watcher: ChangeListener) -> Callable[[], None]:
         """Call `watcher` with the names of changed objects, until the returned function is called.
@@ -229,6 +208,15 @@ class Workspace:
         """Reserve the configurations that a moving arm will pass (radians, n each); empty releases them."""
         self._scene().claim(arm, rows)
         self._notify({arm})
+
+    def take_scene(self, scene: SimScene) -> None:
+        """Take what is in the cell from now on; whoever moves there checks its path anew."""
+        self._cell_scene = scene
+        if self._live is not None:
+            self._take_cell_scene(self._live)
+        elif self._occupancy is not None and self._clock.virtual:
+            # The cameras have to know what they see.
+            self._scene()
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the services under `cell` and publish `cell/planning_scene`."""
@@ -310,6 +298,18 @@ class Workspace:
         live.refresh()
         self._live, self._published_revision = live, live.revision
         self._publish(live)
+        if self._cell_scene is not None:
+            # It may have changed while this one was made, on a thread.
+            self._take_cell_scene(live)
+
+    def _take_cell_scene(self, live: LiveScene) -> None:
+        # Loaded with the scene, as it is in `make_scene`.
+        from robots.planning.scene.cell_planning_scene import known_obstacles
+
+        assert self._cell_scene is not None
+        parts = tuple(part.name for part in self._cell_scene.parts)
+        changed = live.take_base(known_obstacles(self._cell_scene), parts=parts)
+        self._notify(changed | live.refresh())
 
     def _refresh(self, live: LiveScene) -> None:
         changed = live.refresh()

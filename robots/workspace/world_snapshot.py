@@ -38,7 +38,9 @@ class WorldPoseReader:
             )
             for name, tool in self._arms.items()
         }
-        return MeasuredPoses(arms=arms, parts={name: frame(name) for name in summary.parts}, link=link)
+        return MeasuredPoses(
+            arms=arms, parts={part.name: frame(part.name) for part in self._world.modules.scene.parts}, link=link
+        )
 
 
 def _held_part(snapshot: SimSnapshot, arm: ArmSummary, *, parts: tuple[str, ...]) -> str:

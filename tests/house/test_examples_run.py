@@ -36,7 +36,17 @@ NOTES = "canvas_notes:"
 TAGS = "\ntags:"
 FACTORS = "\nfactors:"
 MODULE = "\nmodule:"
-PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:", "topics:", "unknown_bodies:")
+PARTS_OF_CELLS = (
+    "robots:",
+    "parts:",
+    "fixtures:",
+    "world:",
+    "people:",
+    "cameras:",
+    "topics:",
+    "bus:",
+    "unknown_bodies:",
+)
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
 

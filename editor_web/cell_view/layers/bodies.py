@@ -10,7 +10,7 @@ import viser
 
 from editor_web.cell_view.layers.contact_highlight import bodies_in_contact
 from editor_web.cell_view.rendering.canvas import CELL, Canvas
-from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry, colour_of, corners
+from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry, body_name, colour_of, corners
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
 from editor_web.cell_view.rendering.transforms import WorldPose, is_visible_change, poses_by_frame
@@ -26,10 +26,10 @@ _AXES_M = 0.12
 _TOUCHING: Rgb = (220, 38, 38)
 
 
-def body_node(frame: str, arms: frozenset[str], *, under: str = "") -> str:
-    """Return the scene node of a frame. Bodies that belong neither to an arm nor to the cell itself are people."""
+def body_node(frame: str, arms: frozenset[str], *, parts: frozenset[str] = frozenset(), under: str = "") -> str:
+    """Return the scene node of a frame. Bodies that belong to no arm, and are no `parts` of a module, are people."""
     owner, slash, _ = frame.partition("/")
-    is_person = bool(arms and slash) and owner not in arms
+    is_person = bool(arms and slash) and owner not in arms and frame not in parts
     # A slash would nest the frame below another one, but all poses are in the world frame.
     return f"{root_of('people', under=under) if is_person else under + CELL}/{frame.replace('/', '.')}"
 
@@ -45,6 +45,7 @@ class BodyLayer:
         self._under = under
         self._scene: SceneDescription | None = None
         self._arms: frozenset[str] = frozenset()
+        self._parts: frozenset[str] = frozenset()
         self._poses: FramePoses | None = None
         self._frames: dict[str, list[viser.FrameHandle]] = {}
         self._drawn: dict[str, WorldPose] = {}
@@ -70,6 +71,8 @@ class BodyLayer:
 
     def _build(self, scene: SceneDescription, latest: LatestMessages) -> None:
         known = poses_by_frame(latest.frames)
+        # The one body of a part has the name of its frame.
+        self._parts = frozenset(each.frame for each in scene.geometries if each.name == each.frame)
         for handle in (each for of_name in self._frames.values() for each in of_name):
             handle.remove()
         self._frames, self._drawn, self._shapes = {}, {}, []
@@ -85,9 +88,9 @@ class BodyLayer:
                 # One invalid shape must not hide the rest of the cell.
                 _log.warning("%s is not drawn: %s", geometry.name, error)
                 continue
-            # A link of an arm is identified by its frame; a fixture with several bodies has `name/0`, `name/1`.
+            # A link of an arm is identified by its frame.
             is_link = geometry.frame.partition("/")[0] in self._arms
-            name = geometry.frame if is_link else geometry.name.partition("/")[0]
+            name = geometry.frame if is_link else body_name(geometry)
             self._shapes.append((name, shape, colour_of(geometry)))
         self._add_axes(latest, known)
 
@@ -102,7 +105,7 @@ class BodyLayer:
                     shape.color = _TOUCHING if name in names else own
 
     def _node(self, frame: str) -> str:
-        return body_node(frame, self._arms, under=self._under)
+        return body_node(frame, self._arms, parts=self._parts, under=self._under)
 
     def _add_axes(self, latest: LatestMessages, known: Mapping[str, WorldPose]) -> None:
         """Show the frames of the world, the tools and the parts."""

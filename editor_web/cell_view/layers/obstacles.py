@@ -11,7 +11,7 @@ import viser
 from editor_web.cell_view.layers.contact_highlight import bodies_in_contact
 from editor_web.cell_view.rendering.canvas import Canvas
 from editor_web.cell_view.rendering.convex_shapes import add_convex_shape
-from editor_web.cell_view.rendering.geometry import Rgb
+from editor_web.cell_view.rendering.geometry import Rgb, body_name
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.layer_groups import root_of
 from editor_web.cell_view.rendering.transforms import (
@@ -122,8 +122,7 @@ def _shown(
     paths: Mapping[str, PathPreview],
     blocks: Mapping[str, JogBlock],
 ) -> _Shown:
-    # A fixture with several bodies has `name/0`, `name/1`.
-    known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
+    known = {body_name(g) for g in scene.geometries} if scene is not None else set[str]()
     held = {part.name for part in state.held}
     blocking = bodies_in_contact(paths, blocks, [each.name for each in (*state.obstacles, *state.held)])
     return _Shown(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,15 @@ from engine.errors import FlexcellError
 from engine.messages import Vector3, VisualGeometry
 
 _SWELL = 1.02
+# A body of several geometries has `name/0`, `name/1`.
+_NUMBER = re.compile(r"/\d+$")
 Rgb = tuple[int, int, int]
 GeometryHandle = viser.MeshHandle | viser.BoxHandle | viser.CylinderHandle | viser.IcosphereHandle
+
+
+def body_name(geometry: VisualGeometry) -> str:
+    """Return the name of the body that a geometry belongs to: `table` for `table/3`, `vice/jaws` for `vice/jaws/0`."""
+    return _NUMBER.sub("", geometry.name)
 
 
 def add_geometry(

@@ -49,6 +49,8 @@ DIVERTED_TO_OUTCOME = ("operator", "start")
 """Values of `NodeStep.by` whose target is an outcome and not a transition target."""
 # Outcomes shown as a failure if the event has no cause.
 FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
+# The answers of conditions: why one does not hold is its cause, and no failure. In trees, ticks say what fails.
+_ANSWERS = frozenset({"true", "false"})
 # Frequent, and of interest to parts only.
 _CHANGES_NOTHING = frozenset(
     {UserdataWritten, UserdataAppended, GoalSent, ServiceCalled, ServiceAnswered, MessageLogged}
@@ -60,6 +62,8 @@ def exit_status(event: NodeExited) -> str:
     """Return the status of an exited node: done, failed or stopped."""
     if event.preempted:
         return "stopped"
+    if event.outcome in _ANSWERS:
+        return "done"
     return "failed" if event.cause is not None or event.outcome in FAILURE_OUTCOMES else "done"
 
 
@@ -237,12 +241,16 @@ class RunReducer(RunStatePart):
         self._nodes[event.path] = msgspec.structs.replace(self.state.node(event.path), plan=line)
 
     def status_changed(self, event: StatusChanged) -> None:
-        """Apply a tick status; those of composites and decorators are their visits, leaves keep their outcome."""
+        """Apply a tick status; those of composites and decorators are their visits, leaves keep their outcome.
+
+        Whether the answer of a condition is a failure is for the tree to say.
+        """
         path = event.path
         node = self.state.node(path)
         self._step = NodeStep(kind="ticked", path=path, name=event.status, before=node)
         if (node.outcome or node.cause) and event.status != "invalid":
-            self._nodes[path] = node
+            is_failure = event.status == "failure" and node.outcome in _ANSWERS
+            self._nodes[path] = msgspec.structs.replace(node, status="failed") if is_failure else node
             return
         status = _TICKED.get(event.status, "idle")
         started = status == "active" and node.status != "active"

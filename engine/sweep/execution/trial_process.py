@@ -10,6 +10,7 @@ import socket
 import time
 from contextlib import suppress
 from multiprocessing.connection import Connection
+from tempfile import TemporaryDirectory
 
 import msgspec
 
@@ -38,6 +39,7 @@ class TrialProcess:
 
     def __init__(self, task: WorkerTask, limits: ProcessLimits) -> None:
         self._limits = limits
+        self._scratch = TemporaryDirectory(prefix="flexcell-sweep-", ignore_cleanup_errors=True)
         ours, theirs = socket.socketpair()
         with ours, theirs:
             self._process = start_child(CODE, [theirs.fileno()], what=_NAME)
@@ -47,7 +49,7 @@ class TrialProcess:
         self._runs = 0
         self.is_spent = False
         """Whether it executes no further configuration: it has ended, or is to be replaced."""
-        self._send(msgspec.json.encode(task))
+        self._send(msgspec.json.encode(msgspec.structs.replace(task, scratch=self._scratch.name)))
 
     @property
     def is_busy(self) -> bool:
@@ -97,6 +99,7 @@ class TrialProcess:
         self._process.kill()
         self._process.wait()
         self.connection.close()
+        self._scratch.cleanup()
 
     def _ended(self, status: TrialStatus, message: str) -> WorkerAnswer:
         assert self._configuration is not None

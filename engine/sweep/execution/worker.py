@@ -6,6 +6,7 @@ import os
 import resource
 import signal
 import socket
+import tempfile
 from collections.abc import Mapping
 from multiprocessing.connection import Connection
 
@@ -34,6 +35,8 @@ class WorkerTask(msgspec.Struct, frozen=True, kw_only=True):
     memory_bytes: int
     folder: str = ""
     """Where relative paths of documents lead; by default the folder of its parent."""
+    scratch: str = ""
+    """Where its temporary files are, which its parent removes: a process that is killed removes nothing."""
 
 
 class WorkerAnswer(msgspec.Struct, frozen=True, kw_only=True):
@@ -61,6 +64,7 @@ def _answer(connection: Connection) -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (task.memory_bytes, hard))
     if task.folder:
         os.chdir(task.folder)
+    tempfile.tempdir = task.scratch or None
     trials: Trials | None = None
     while True:
         try:

@@ -18,7 +18,8 @@ import msgspec
 from engine.authoring.python_file import load_python_behavior
 from engine.check import check_behavior, require_no_errors
 from engine.document import Behavior, load_behavior
-from engine.document.cell import Cell, SqliteStoreSpec, load_cell
+from engine.document.cell import Cell, load_cell
+from engine.document.cell_store_spec import SqliteStoreSpec
 from engine.document.faults import Faults, load_faults
 from engine.document.project_file import ProjectFile, find_project
 from engine.document.python_name import is_python_name

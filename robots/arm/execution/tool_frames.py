@@ -24,7 +24,7 @@ class ToolFrames:
         arm: Name of the arm on the bus.
         base_link: Base link of its model; the base frame is named `<arm>/<base_link>`.
         base: Pose of the base in the world.
-        named: Poses of the frames of the cell in the world.
+        named: Poses of the frames of the cell in the world; looked up at each use, as modules come and go.
     """
 
     def __init__(
@@ -33,10 +33,7 @@ class ToolFrames:
         self._arm = arm
         self.base_frame = f"{arm}/{base_link}"
         self.base = base
-        self._outer = {
-            self.base_frame: base,
-            **{name: RigidTransform.from_pose(pose) for name, pose in (named or {}).items()},
-        }
+        self._named: Mapping[str, Pose] = named if named is not None else {}
 
     def axes(self, frame: str, *, tool: RigidTransform) -> Array:
         """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is the tool's pose."""
@@ -61,11 +58,12 @@ class ToolFrames:
             )
         if pose.frame == WORLD:
             return given
-        outer = self._outer.get(pose.frame)
-        if outer is not None:
-            return outer.then(given)
+        if pose.frame == self.base_frame:
+            return self.base.then(given)
+        if pose.frame in self._named:
+            return RigidTransform.from_pose(self._named[pose.frame]).then(given)
         raise RobotError(
             f"the frame {pose.frame!r} is not known to this arm",
             where=self._arm,
-            hint=did_you_mean(pose.frame, (WORLD, *self._outer)),
+            hint=did_you_mean(pose.frame, (WORLD, self.base_frame, *self._named)),
         )

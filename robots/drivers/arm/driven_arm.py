@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Self
 
@@ -12,6 +12,7 @@ from engine.bus import SkillBus, Topic
 from engine.cell.drivers import DeviceReport
 from engine.clock import Clock
 from engine.errors import GoalRejected, RobotError
+from engine.messages import Pose
 from engine.messages.device_state import DeviceLink, DeviceState
 from engine.robot import DeviceStatus
 from engine.skills.devices import EnableDevice
@@ -148,7 +149,7 @@ class DrivenArm:
                 outputs=setup.output_services(outputs) if outputs is not None else None,
                 inputs=setup.input_services(connection.inputs),
                 tolerance=self._tolerance,
-                frames=setup.context.cell.document.fixed_frames,
+                frames=self._frames(),
                 workspace=setup.workspace(),
             )
             await self._server.__aenter__()
@@ -259,6 +260,11 @@ class DrivenArm:
     def _link_now(self) -> DeviceLink:
         facts = self._connection.facts()
         return self._meter.link(age_s=facts.age_s, speed_scaling=facts.speed_scaling)
+
+    def _frames(self) -> Mapping[str, Pose]:
+        """Return the named frames of the cell; in a world they come and go with its modules."""
+        world = self._setup.world
+        return world.modules.frames if world is not None else self._setup.context.cell.document.fixed_frames
 
     def _mirror(self) -> None:
         """Place its body in the world where the arm is measured."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from engine.cell.drivers import AssignedDriver, Emulator, EmulatorOptions, Ready, assigned_drivers, emulator
-from engine.document import load_cell, with_simulated_devices
+from engine.document import cell_at_start, load_cell, with_simulated_devices
 from engine.errors import FlexcellError
 from robots.drivers.cell_emulation.cell_emulator import CellEmulatorOptions
 from robots.drivers.cell_emulation.serve_franka_cell import has_franka, serve_franka_cell
@@ -132,12 +132,12 @@ async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:
     simulated = with_simulated_devices(cell, ("all",))
     seed = options.seed if options.seed >= 0 else None
     if has_franka(assigned):
-        scene = build_scene(simulated.document, seed=seed, resolve=simulated.resolve)
+        scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
         await serve_franka_cell(assigned, scene, options, ready)
         return
     switched = dict(_switched_tools(assigned))
     devices = tuple(_Device.of(each) for each in assigned if not (each.tool and each.robot in switched))
-    scene = build_scene(simulated.document, seed=seed, resolve=simulated.resolve)
+    scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
     joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
     async with new_world(scene, virtual=True) as world:
         time = WorldTime(world)

@@ -8,7 +8,7 @@ from functools import cached_property
 import msgspec
 import numpy as np
 
-from engine.document import Cell, MujocoWorld
+from engine.document import Cell, MujocoWorld, cell_at_start
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.skills.arm_target import ArmTarget, TargetViolation
@@ -73,7 +73,8 @@ class ReachabilityChecker:
 
     @cached_property
     def _scene(self) -> PlanningScene:
-        document = self._cell.document
+        # What is plugged later has no place yet, or one where another module is.
+        document = cell_at_start(self._cell)
         drawn = msgspec.structs.replace(
             document,
             world=document.world or MujocoWorld(),

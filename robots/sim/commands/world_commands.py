@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import msgspec
+
+from engine.messages import Pose
 from engine.skills.people import Reach
 from engine.skills.simulated_world import PushBody
 from robots.control.commanding.arm_commands import ArmCommand, ControlCommand, MotionCommand
@@ -51,6 +54,20 @@ class RestoreWorld(ControlCommand, frozen=True, kw_only=True, tag="restore"):
     """Restore an image of this world, at rest; its numbers are as in `ImageLayout`."""
 
     image: Array
+
+
+class PlaceModule(ControlCommand, frozen=True, kw_only=True, tag="place_module"):
+    """Request: plug a module with its frame at `pose` in the world, or unplug it, None; answered by `ModulePlaced`."""
+
+    module: str
+    pose: Pose | None
+
+
+class ModulePlaced(msgspec.Struct, frozen=True, kw_only=True, tag="module_placed"):
+    """The answer to `PlaceModule`: why nothing was changed, empty if it was; and the parts of modules that are away."""
+
+    refused: str = ""
+    away: tuple[str, ...] = ()
 
 
 class ShutDownWorld(ControlCommand, frozen=True, kw_only=True, tag="shutdown"):

@@ -9,7 +9,7 @@ import numpy as np
 from engine.errors import RobotError
 from robots.port import Array
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.world_commands import AnyCommand, RestoreWorld
+from robots.sim.commands.world_commands import AnyCommand, ModulePlaced, PlaceModule, RestoreWorld
 from robots.sim.host.world_host import StepHook, WorldListener
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import CellSummary, SimSnapshot
@@ -70,6 +70,10 @@ class LockstepHost:
         self.simulation.apply(RestoreWorld(image=image))
         # The world's clock jumps; the loop's does not.
         self._start_steps += self.simulation.steps - before
+
+    async def place_module(self, command: PlaceModule) -> ModulePlaced:
+        """Plug or unplug a module between two steps."""
+        return self.simulation.place_module(command)
 
     def send(self, command: AnyCommand) -> None:
         """Send a command, which acts from the next step on."""

@@ -18,7 +18,7 @@ from robots.port.loop_heartbeat import LoopHeartbeat
 from robots.port.shared_file import new_shared_file
 from robots.port.shared_numbers import SharedNumbers
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.world_commands import AnyCommand, RestoreWorld, ShutDownWorld
+from robots.sim.commands.world_commands import AnyCommand, ModulePlaced, PlaceModule, RestoreWorld, ShutDownWorld
 from robots.sim.host.loop_timing import SIZE, LoopTiming, decode_timing
 from robots.sim.host.world_host import WorldListener
 from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady
@@ -31,7 +31,7 @@ _END_S = 6.0
 # A process that is already shutting down needs no more to exit.
 _EXIT_S = 0.2
 # On an overloaded machine this takes seconds; a timeout too early makes a run impossible to resume.
-_RESTORE_S = 20.0
+_ANSWER_S = 20.0
 
 
 NewStopLine = Callable[[str], socket.socket]
@@ -88,14 +88,21 @@ class ProcessHost:
 
     async def restore(self, image: Array) -> None:
         """Restore an image of this world; returns when the process has confirmed it."""
-        restored = self._alive().ask(RestoreWorld(image=image)).answer
+        await self._answer(RestoreWorld(image=image), what="restore its state")
+
+    async def place_module(self, command: PlaceModule) -> ModulePlaced:
+        """Plug or unplug a module between two steps of the process."""
+        answer = await self._answer(command, what=f"place {command.module}")
+        assert isinstance(answer, ModulePlaced)
+        return answer
+
+    async def _answer(self, request: ToWorld, *, what: str) -> FromWorld:
+        answer = self._alive().ask(request).answer
         try:
-            async with asyncio.timeout(_RESTORE_S):
-                await asyncio.shield(restored)
+            async with asyncio.timeout(_ANSWER_S):
+                return await asyncio.shield(answer)
         except TimeoutError as error:
-            raise RobotError(
-                f"the world's process did not restore its state within {_RESTORE_S:g} s", hint=CONNECT_AGAIN
-            ) from error
+            raise RobotError(f"{_WHAT} did not {what} within {_ANSWER_S:g} s", hint=CONNECT_AGAIN) from error
 
     def send(self, command: AnyCommand) -> None:
         """Send a command; raises RobotError when the process is lost."""

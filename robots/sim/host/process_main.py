@@ -23,7 +23,7 @@ from robots.port.control_process import EngineMonitor
 from robots.port.heartbeat import Heartbeat
 from robots.port.shared_numbers import SharedNumbers
 from robots.port.stop_monitor import StopMonitor
-from robots.sim.commands.world_commands import RestoreWorld, ShutDownWorld
+from robots.sim.commands.world_commands import PlaceModule, RestoreWorld, ShutDownWorld
 from robots.sim.host.loop_timing import SIZE, TimingCounter
 from robots.sim.host.world_messages import BuildWorld, FromWorld, ToWorld, WorldReady, WorldRestored
 from robots.sim.loop.simulation import Simulation
@@ -137,6 +137,10 @@ class WorldLoop:
                 self._simulation.apply(command)
                 self.publish()
                 self._channel.post(WorldRestored(), number=number)
+            case PlaceModule():
+                placed = self._simulation.place_module(command)
+                self.publish()
+                self._channel.post(placed, number=number)
             case BuildWorld():
                 raise CellError("the world is built once")
             case _:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from robots.control.motion_event import AnyMotionEvent
 from robots.port import Array
-from robots.sim.commands.world_commands import AnyCommand
+from robots.sim.commands.world_commands import AnyCommand, ModulePlaced, PlaceModule
 from robots.sim.loop.snapshot import CellSummary, SimSnapshot
 
 
@@ -45,6 +45,14 @@ class WorldHost(Protocol):
 
     async def restore(self, image: Array) -> None:
         """Restore an image of this world, at rest; nothing moves, and nothing may be started meanwhile.
+
+        Raises:
+            RobotError: the world is lost.
+        """
+        ...
+
+    async def place_module(self, command: PlaceModule) -> ModulePlaced:
+        """Plug or unplug a module between two steps; returns when its bodies are there, or why they are not.
 
         Raises:
             RobotError: the world is lost.

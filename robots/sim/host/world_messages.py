@@ -8,7 +8,7 @@ from robots.control.commanding.arm_commands import ControlCommand
 from robots.control.motion_event import AnyMotionEvent
 from robots.io.request_failure import RequestFailure
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.world_commands import AnyCommand
+from robots.sim.commands.world_commands import AnyCommand, ModulePlaced, PlaceModule
 from robots.sim.loop.snapshot import CellSummary
 
 
@@ -29,5 +29,5 @@ class WorldRestored(msgspec.Struct, frozen=True, kw_only=True, tag="restored"):
     """The answer to `RestoreWorld`: the world is restored to the image, and its state can be read."""
 
 
-ToWorld = BuildWorld | AnyCommand
-FromWorld = WorldReady | WorldRestored | RequestFailure | AnyMotionEvent
+ToWorld = BuildWorld | PlaceModule | AnyCommand
+FromWorld = WorldReady | WorldRestored | ModulePlaced | RequestFailure | AnyMotionEvent

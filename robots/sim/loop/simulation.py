@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from robots.control.arm_control_loop import ArmControlLoop
@@ -15,8 +17,10 @@ from robots.sim.commands.world_commands import (
     AnyCommand,
     MirrorArm,
     MirrorTool,
+    ModulePlaced,
     MovePersonHand,
     MoveTool,
+    PlaceModule,
     PushSimBody,
     ResetFreeParts,
     RestoreWorld,
@@ -26,6 +30,7 @@ from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
 from robots.sim.loop.held_parts import HeldParts
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
@@ -49,12 +54,16 @@ class Simulation:
 
     def __init__(self, cell: CellModel) -> None:
         self._cell = cell
-        self._physics = physics = Physics(cell.model)
+        # Modules change the model; a built cell is only read.
+        self._physics = physics = Physics(copy(cell.model) if cell.scene.modules else cell.model)
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
         self._start_poses = self._qpos[cell.free_qpos].copy()
         self._set_home()
+        # Before modules go: the same for all worlds of one scene.
+        model = fingerprint(cell.model)
+        self._modules = DockedModules(cell, physics)
         self._contacts = ContactReader(cell, physics)
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
         driven = {placement.name for placement in cell.scene.arms if placement.driven}
@@ -95,8 +104,13 @@ class Simulation:
         self._arm_dof = np.concatenate(
             [np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms if arm.name not in driven)]
         )
-        self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
-        self.summary = _summary(cell, arms, image_size=self.image_layout.size)
+        self.image_layout = ImageLayout(
+            arms,
+            state_size=physics.state_size,
+            modules_size=self._modules.image_size,
+            people_size=self._people.image_size,
+        )
+        self.summary = _summary(cell, arms, model=model, image=self.image_layout)
         self.layout = SnapshotLayout(self.summary)
 
     @property
@@ -154,11 +168,18 @@ class Simulation:
             case ResetFreeParts():
                 self._qpos[self._cell.free_qpos] = self._start_poses
                 self._qvel[self._cell.free_dof] = 0.0
+                self._modules.reset()
             case RestoreWorld():
                 self._restore(command.image)
             case StopAll() | ShutDownWorld():
                 for device in self._devices():
                     device.stop()
+
+    def place_module(self, command: PlaceModule) -> ModulePlaced:
+        """Plug or unplug a module from the next step on; nothing else of the state changes."""
+        numbers = [self._held_parts.number(name) for name in self._arms]
+        held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
+        return self._modules.place(command, held=held)
 
     def _mirror(self, command: MirrorArm | MirrorTool) -> None:
         match command:
@@ -174,6 +195,7 @@ class Simulation:
         for arm in self._arms.values():
             arm.place()
         self._held_parts.place()
+        self._modules.pin()
         self._physics.start_step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
@@ -208,6 +230,7 @@ class Simulation:
         layout = self.image_layout
         image[layout.steps] = self.steps
         self._physics.read_state(image[layout.physics])
+        self._modules.write_image(image[layout.modules])
         for name, arm in self._arms.items():
             image[layout.set_points[name]] = arm.control.motion.position
             image[layout.reflexes[name]] = arm.control.reflex
@@ -221,6 +244,7 @@ class Simulation:
         layout = self.image_layout
         self.steps = int(image[layout.steps])
         self._hands.let_go()
+        self._modules.take_over(image[layout.modules])
         self._physics.rest_at(image[layout.physics])
         self._held_parts.restart()
         for name, arm in self._arms.items():
@@ -266,14 +290,15 @@ def _arm_summaries(cell: CellModel) -> tuple[ArmSummary, ...]:
     )
 
 
-def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, image_size: int) -> CellSummary:
+def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image: ImageLayout) -> CellSummary:
     return CellSummary(
         step_s=cell.scene.step_s,
         arms=arms,
         frames=cell.frames,
         parts=cell.parts,
         bodies=cell.body_names,
-        model=fingerprint(cell.model),
-        image_size=image_size,
+        model=model,
+        image_size=image.size,
+        modules_at=image.modules.start,
         people=tuple(person.name for person in cell.people),
     )

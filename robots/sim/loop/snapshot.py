@@ -30,7 +30,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     """Summary of a built world for its users.
 
     `bodies` are all names in contacts; `parts` are the last of `frames`. `model` is the
-    fingerprint of the compiled world, `image_size` the length of its image.
+    fingerprint of the compiled world, `image_size` the length of its image, in which modules begin at `modules_at`.
     """
 
     step_s: float
@@ -40,6 +40,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     bodies: tuple[str, ...]
     model: str
     image_size: int
+    modules_at: int = 0
     people: tuple[str, ...] = ()
 
 

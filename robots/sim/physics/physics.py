@@ -57,6 +57,7 @@ class Physics:
         self.geom_centres: Array = self._data.geom_xpos
         self.geom_rotations: Array = self._data.geom_xmat
         self.geom_radii: Array = model.geom_rbound.copy()
+        self._probe: Any = None
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -197,6 +198,60 @@ class Physics:
         """Return positions (m, 3) and quaternions w x y z (m, 4) of bodies at the start of the last step."""
         return self._xpos[bodies], self._xquat[bodies]
 
+    def place_fixed(self, body: int, xyz: Array, xyzw: Array) -> None:
+        """Place a body that no joint moves from the next step on; its published pose is the new one at once."""
+        place_fixed(self._model, body, xyz, xyzw)
+        self._show(body, xyz, xyzw)
+
+    def place_free(self, qpos: NDArray[np.intp], dof: NDArray[np.intp], xyz: Array, xyzw: Array, *, body: int) -> None:
+        """Place a free body, at rest, with the addresses of its pose (7,) and velocity (6,)."""
+        self.positions[qpos] = (*xyz.tolist(), *np.roll(xyzw, 1).tolist())
+        self.velocities[dof] = 0.0
+        self._data.qacc_warmstart[dof] = 0.0
+        self._pushes[body] = 0.0
+        self._show(body, xyz, xyzw)
+
+    def prepare_probe(self) -> None:
+        """Allocate what `near` needs, so that it allocates nothing later."""
+        self._probe = mujoco.MjData(self._model)
+
+    def near(self, bodies: set[int], *, within_m: float) -> dict[int, float]:
+        """Return the distances, negative in one another, of what could touch the present positions of `bodies`.
+
+        It looks at a copy: nothing of the state changes. Bodies that are fixed to the world are near bodies that
+        can move only.
+        """
+        model, probe = self._model, self._probe
+        probe.qpos[:] = self.positions
+        mujoco.mj_kinematics(model, probe)
+        body_of = model.geom_bodyid
+        mine = np.isin(body_of, list(bodies))
+        first, second = np.meshgrid(mine.nonzero()[0], (~mine).nonzero()[0], indexing="ij")
+        first, second = first.reshape(-1), second.reshape(-1)
+        kinds, partners = model.geom_contype, model.geom_conaffinity
+        chosen = ((kinds[first] & partners[second]) | (kinds[second] & partners[first])) != 0
+        welded = model.body_weldid[body_of]
+        chosen &= welded[first] != welded[second]
+        centres, radii = probe.geom_xpos, model.geom_rbound
+        apart = np.linalg.norm(centres[first] - centres[second], axis=1) - radii[first] - radii[second]
+        chosen &= apart <= within_m
+        found: dict[int, float] = {}
+        for a, b in zip(first[chosen].tolist(), second[chosen].tolist(), strict=True):
+            distance_m = float(mujoco.mj_geomDistance(model, probe, a, b, within_m + 0.01, None))
+            other = int(body_of[b])
+            if distance_m <= within_m:
+                found[other] = min(distance_m, found.get(other, distance_m))
+        return found
+
+    def pose_now(self, qpos: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Return position (3,) and quaternion x y z w (4,) of a free body with the addresses of its pose."""
+        place = self.positions[qpos]
+        return place[:3].copy(), np.roll(place[3:], -1)
+
+    def _show(self, body: int, xyz: Array, xyzw: Array) -> None:
+        self._xpos[body], self._xquat[body] = xyz, np.roll(xyzw, 1)
+        mujoco.mju_quat2Mat(self._data.xmat[body], self._xquat[body])
+
     def read_state(self, out: Array) -> None:
         """Write the complete state, shape (`state_size`,)."""
         mujoco.mj_getState(self._model, self._data, out, self._state_kind)
@@ -215,3 +270,8 @@ class Physics:
         state = np.zeros(self.state_size)
         self.read_state(state)
         return hashlib.sha256(state.tobytes()).hexdigest()
+
+
+def place_fixed(model: Any, body: int, xyz: Array, xyzw: Array) -> None:
+    """Place a body of a compiled model that stands in the world without a joint, or on a joint of its own."""
+    model.body_pos[body], model.body_quat[body] = xyz, np.roll(xyzw, 1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 from collections.abc import Callable
 from contextlib import AsyncExitStack
 from functools import partial
@@ -11,18 +10,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self, cast
 
-from engine.bus import LeaseTable, SkillBus
+from engine.bus import SkillBus
 from engine.clock import VirtualLoop
-from engine.errors import RobotError, SkillFailed
+from engine.document import Cell
+from engine.errors import RobotError
 from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
-from engine.skills.simulated_world import LONGEST_PUSH_S, PushBody, PushBodyResult, ResetParts, ResetPartsResult
 from robots.control.commanding.arm_commands import StopAll
 from robots.control.commanding.motion_registry import MotionRegistry
 from robots.port import ArmPort, Array, GripperPort, HandPort
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.world_commands import MirrorArm, PushSimBody
-from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
+from robots.sim.commands.world_commands import MirrorArm
 from robots.sim.host.lockstep_host import LockstepHost
 from robots.sim.host.process_host import NewStopLine, ProcessHost
 from robots.sim.host.world_host import StepHook, WorldHost
@@ -32,7 +30,9 @@ from robots.sim.ports.arm_ports import arm_ports, arm_summaries, input_ports, ou
 from robots.sim.ports.sim_inputs import SimInputPort
 from robots.sim.ports.sim_outputs import SimOutputPort
 from robots.sim.ports.tool_ports import ToolPorts
+from robots.sim.world.body_services import BodyServices
 from robots.sim.world.driven_tools import mirror_driven_tools
+from robots.sim.world.module_services import ModuleServices
 from robots.sim.world.person_services import PersonServices
 from robots.sim.world.sim_robot import SimRobot, StatefulDevice, WorldDependentDevice
 from robots.sim.world.snapshot_codec import WorldImage, decode_snapshot, encode_snapshot
@@ -55,10 +55,17 @@ class SimWorld:
     `make_robots` creates the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
     before the world is opened and work while it is open. Servers without an arm are devices of
     the world itself, such as cameras: they are entered, registered and exited with the world.
+    `modules` says what of the scene is in the world; without a `cell` it is all of it.
     """
 
     def __init__(
-        self, scene: SimScene, *, host: WorldHost, make_robots: RobotMaker = no_robots, cache: Path | None = None
+        self,
+        scene: SimScene,
+        *,
+        host: WorldHost,
+        make_robots: RobotMaker = no_robots,
+        cache: Path | None = None,
+        cell: Cell | None = None,
     ) -> None:
         self._scene = scene
         self._host = host
@@ -73,13 +80,20 @@ class SimWorld:
         self._at_loss = b""
         self._connection_changed: Callable[[], None] = _nothing
         self._publisher: WorldPublisher | None = None
-        self._bus: SkillBus | None = None
         self._timer: asyncio.Task[None] | None = None
         self._joint_steps = max(1, round(1.0 / (JOINT_RATE_HZ * scene.step_s)))
         self._frame_steps = max(1, round(1.0 / (FRAME_RATE_HZ * scene.step_s)))
         self._hooked_steps = 0
         self._hooks: list[tuple[StepHook, Callable[[], bool]]] = []
         self.people = PersonServices(self.name, scene.people, host)
+        self.modules = ModuleServices(self.name, scene, host, cell=cell)
+        self._bodies = BodyServices(
+            self.name,
+            host,
+            arms=tuple(self._arms),
+            is_moving=lambda: bool(self._board.active()),
+            modules=self.modules,
+        )
         self._robots = make_robots(self)
         self._devices = tuple(robot for robot in self._robots if robot.name not in self._arms)
         self._opened_devices = AsyncExitStack()
@@ -188,7 +202,9 @@ class SimWorld:
         try:
             for name, settings in image.settings.items():
                 self._arm_ports[name].configure(settings)
-            await self._host.restore(image.array())
+            async with self.modules.changing:
+                await self._host.restore(image.array())
+                self.modules.take_image(image.array())
             self._board.reflexes = dict(image.reflexes)
         finally:
             self._board.closed_reason = ""
@@ -243,6 +259,7 @@ class SimWorld:
 
     async def _open_host(self) -> None:
         await self._host.open(self._board)
+        self.modules.begin()
         if isinstance(self._host, LockstepHost):
             self._host.begin(asyncio.get_running_loop().time())
 
@@ -258,25 +275,17 @@ class SimWorld:
         Raises:
             RobotError: there is no such body, a value is not finite, the push is too long, or the world is lost.
         """
-        if body not in self._host.summary.bodies:
-            raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
-        if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
-            raise RobotError("a push has values that are not finite", where=self.name)
-        if not 0.0 < duration_s <= LONGEST_PUSH_S:
-            raise RobotError(
-                f"a push of {duration_s:g} s", where=self.name, hint=f"push for up to {LONGEST_PUSH_S:g} s"
-            )
-        self._host.send(PushSimBody(push=PushBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m)))
+        self._bodies.push(body, force_n=force_n, duration_s=duration_s, at_m=at_m)
 
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
-        describe = partial(describe_scene, self._scene, cache=self._cache)
-        self._publisher = WorldPublisher(bus, self._host, describe, scene=self._scene)
-        self._bus = bus
+        describe = partial(describe_scene, cache=self._cache)
+        publisher = self._publisher = WorldPublisher(bus, self._host, describe, scene=self.modules.scene)
+        self.modules.watch(publisher.take_scene)
         mirror_driven_tools(bus, self._host, self._scene)
-        bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
-        bus.advertise_service(PushBody, self._push_body, namespace=self.name)
+        self._bodies.register(bus)
         self.people.register(bus)
+        self.modules.register(bus)
         for device in self._devices:
             device.register(bus)
         self._publish_on()
@@ -285,21 +294,6 @@ class SimWorld:
         """Start publishing in real time; in lockstep every step publishes."""
         if self._publisher is not None and not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
-
-    async def _push_body(self, request: PushBody) -> PushBodyResult:
-        self.push(request.body, force_n=request.force_n, duration_s=request.duration_s, at_m=request.at_m)
-        return PushBodyResult(body=request.body)
-
-    async def _reset_parts(self, request: ResetParts) -> ResetPartsResult:
-        """Reset the parts; raises SkillFailed while a run leases an arm or something moves."""
-        leases = self._bus.leases if self._bus is not None else LeaseTable()
-        owners = {arm: owner for arm in self._arms if (owner := leases.owner(arm)) is not None}
-        for arm, owner in owners.items():
-            raise SkillFailed(f"{arm} is commanded by run {owner}", where=self.name, hint="wait for its end or stop it")
-        if self._board.active():
-            raise SkillFailed("something moves", where=self.name, hint="stop it first")
-        self._host.send(ResetPartsCommand())
-        return ResetPartsResult(parts=tuple(part.name for part in self._scene.parts))
 
     async def stop(self) -> None:
         """Cancel every motion and return when all have ended at rest.
@@ -414,7 +408,8 @@ def new_world(
     make_robots: RobotMaker = no_robots,
     cache: Path | None = None,
     new_stop_line: NewStopLine | None = None,
+    cell: Cell | None = None,
 ) -> SimWorld:
     """Return a world for virtual time (in this process, in lockstep) or real time (in its own process)."""
     host = LockstepHost(scene) if virtual else ProcessHost(scene, new_stop_line=new_stop_line)
-    return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
+    return SimWorld(scene, host=host, make_robots=make_robots, cache=cache, cell=cell)

@@ -29,31 +29,41 @@ class WorldPublisher:
         self,
         bus: SkillBus,
         host: WorldHost,
-        describe: Callable[[], SceneDescription],
+        describe: Callable[[SimScene], SceneDescription],
         *,
         scene: SimScene,
     ) -> None:
         self._host = host
-        self._up = {part.name: axis for part in scene.parts if (axis := up_axis(part)) != _USUALLY_UP}
+        self._describe = describe
         joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
         summary = host.summary
-        self._frames = (*summary.frames, *scene.frames)
-        self._fixed_xyz = tuple(pose.xyz for pose in scene.frames.values())
-        self._fixed_xyzw = tuple(pose.xyzw for pose in scene.frames.values())
-        self._parts = frozenset(summary.parts)
-        self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
         real = {placement.name for placement in scene.arms if placement.driven}
         simulated_arms = [arm for arm in summary.arms if arm.name not in real]
         arms = tuple(topic for arm in simulated_arms for topic in arm_topics(bus, host, arm, joint_maps[arm.name]))
         driven = {placement.name for placement in scene.arms if placement.driven_tool}
         simulated = [arm for arm in summary.arms if arm.name not in driven]
-        topics = (tool_topic(bus, host, arm, parts=self._parts) for arm in simulated)
+        topics = (tool_topic(bus, host, arm, parts=frozenset(summary.parts)) for arm in simulated)
         self._fast = (*arms, *(topic for topic in topics if topic is not None))
         self._frame_topic = bus.topic("cell/frames", FramePoses)
         self._part_topic = bus.topic("cell/parts", PartPoses)
         self._frame_topic.provide(lambda: self._frame_poses(host.snapshot()))
         self._part_topic.provide(lambda: self._part_poses(host.snapshot()))
-        bus.topic("cell/scene", SceneDescription).publish(describe())
+        self._scene_topic = bus.topic("cell/scene", SceneDescription)
+        self.take_scene(scene)
+
+    def take_scene(self, scene: SimScene) -> None:
+        """Publish what is in the world from now on."""
+        summary = self._host.summary
+        self._up = {part.name: axis for part in scene.parts if (axis := up_axis(part)) != _USUALLY_UP}
+        present = frozenset(part.name for part in scene.parts)
+        away = frozenset(summary.parts) - present
+        self._rows = [row for row, name in enumerate(summary.frames) if name not in away]
+        self._frames = (*(summary.frames[row] for row in self._rows), *scene.frames)
+        self._fixed_xyz = tuple(pose.xyz for pose in scene.frames.values())
+        self._fixed_xyzw = tuple(pose.xyzw for pose in scene.frames.values())
+        self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in present]
+        self._scene_topic.publish(self._describe(scene))
+        self.publish_frames()
 
     @property
     def read(self) -> bool:
@@ -91,8 +101,8 @@ class WorldPublisher:
         return FramePoses(
             time_s=snapshot.time_s,
             names=self._frames,
-            xyz=xyz + self._fixed_xyz,
-            xyzw=xyzw + self._fixed_xyzw,
+            xyz=tuple(xyz[row] for row in self._rows) + self._fixed_xyz,
+            xyzw=tuple(xyzw[row] for row in self._rows) + self._fixed_xyzw,
         )
 
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:

@@ -56,8 +56,9 @@ class RayDepthRenderer:
                 changed = self._changed[camera.name] = _Rays(camera, rays.step)
             rays = changed
         reach_m = 2.0 * camera.range_m[1]
-        if rays.still_m is None:
+        if rays.still_m is None or rays.still_version != self._cell.still_version:
             rays.still_m = self._moving.beyond(rays, reach_m=reach_m)
+            rays.still_version = self._cell.still_version
         distance_m = rays.still_m.copy()
         passing = np.flatnonzero(self._moving.passed_by(rays))
         if len(passing):
@@ -98,7 +99,10 @@ def _step(camera: CameraSpec, voxel_m: float, middle_m: np.ndarray[Any, Any]) ->
 
 
 class _Rays:
-    """The rays of one camera; `still_m` (k,) are the distances of what cannot move, None before they are known."""
+    """The rays of one camera; `still_m` (k,) are the distances of what cannot move, None before they are known.
+
+    They hold for this `still_version` of the cell.
+    """
 
     def __init__(self, camera: CameraSpec, step: int) -> None:
         self.camera, self.step = camera, step
@@ -112,6 +116,7 @@ class _Rays:
         self.along = 1.0 / length
         """depth of a point for each metre along its ray"""
         self.still_m: Array | None = None
+        self.still_version = 0
 
     def are_of(self, camera: CameraSpec) -> bool:
         """Return whether the camera stands there, with this lens."""

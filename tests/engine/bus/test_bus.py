@@ -10,11 +10,12 @@ import pytest
 
 from engine.bus import ActiveGoal, GoalStatus, Holder, SkillBus, Topic
 from engine.bus.lease import Lease
-from engine.clock import new_clock
-from engine.errors import BusError, LeaseRefused, NoSuchSkill
+from engine.clock import new_clock, run_virtual
+from engine.errors import BusError, LeaseRefused, NoSuchSkill, SkillFailed
 from engine.messages import GripperState, PartPoses
 from engine.skills.gripper import GraspResult, GripperFeedback, GripperMove, GripperOpen, ReadGripper
 
+STATE = GripperState(time_s=1.0, width_m=0.02, force_n=0.0, held=False)
 HELD = GraspResult(held=True, width_m=0.03, force_n=20.0)
 ONE = Holder("run-1", "root/a")
 TWO = Holder("run-2", "root/b")
@@ -198,3 +199,40 @@ async def test_what_is_withdrawn_is_found_no_more_and_its_neighbours_are() -> No
         "right/gripper/gripper_move",
         "left/gripper_two/gripper_open",
     ]
+
+
+class TestTheTimeOfServices:
+    """A service that hangs is a failure with its name where the cell limits the time; without, it may take its time."""
+
+    async def _answer(self, after_s: float, *, limit_s: float | None) -> object:
+        async def read(_request: ReadGripper) -> GripperState:
+            await asyncio.sleep(after_s)
+            return STATE
+
+        async with SkillBus(new_clock(), service_timeout_s=limit_s) as bus:
+            bus.advertise_service(ReadGripper, read, namespace="left/gripper")
+            return await bus.call(ReadGripper(), to="left/gripper")
+
+    @pytest.mark.parametrize("limit_s", [None, 5.0])
+    def test_one_that_answers_in_time_is_not_hurried(self, limit_s: float | None) -> None:
+        assert run_virtual(self._answer(4.9, limit_s=limit_s)) == STATE
+
+    def test_one_that_takes_longer_has_failed(self) -> None:
+        with pytest.raises(SkillFailed) as failure:
+            run_virtual(self._answer(1e6, limit_s=5.0))
+        assert failure.value.where == "left/gripper/read_gripper"
+        assert "has not answered within 5 s" in str(failure.value)
+        assert failure.value.hint is not None
+        assert "service_timeout_s" in failure.value.hint
+
+    def test_a_timeout_of_the_service_itself_is_its_own(self) -> None:
+        async def read(_request: ReadGripper) -> GripperState:
+            raise TimeoutError("no answer on the wire")
+
+        async def asked() -> None:
+            async with SkillBus(new_clock(), service_timeout_s=5.0) as bus:
+                bus.advertise_service(ReadGripper, read, namespace="left/gripper")
+                await bus.call(ReadGripper(), to="left/gripper")
+
+        with pytest.raises(SkillFailed, match="TimeoutError: no answer on the wire"):
+            run_virtual(asked())

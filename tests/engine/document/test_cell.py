@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.document import Placement, load_cell
-from engine.document.cell import MongoStoreSpec, SqliteStoreSpec
+from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec
 from engine.errors import DocumentError, Position
 
 DEMO = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
@@ -86,7 +86,8 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "must_cover",
         "regions must be covered, but the cell has no camera",
     ),
-    "bus": ("parts:", "bus: {}\nparts:", "bus", "this version does not support `bus`"),
+    "calibration of a cell": ("parts:", "calibration: a.yaml\nparts:", "calibration", "give it to the robot"),
+    "no time for services": ("parts:", "bus: {service_timeout_s: 0}\nparts:", "0}", "> 0"),
 }
 
 

@@ -37,3 +37,8 @@ def test_every_kind_of_body_has_its_primitive() -> None:
 
 def test_a_body_of_an_unknown_kind_is_left_out() -> None:
     assert scene_update(SceneDescription(geometries=(_body("blob"),)), 0).entities == ()
+
+
+def test_a_scene_replaces_the_one_before_so_that_an_unplugged_module_vanishes() -> None:
+    (deletion,) = scene_update(SceneDescription(geometries=()), 1_500_000_000).deletions
+    assert (deletion.type, deletion.timestamp) == (1, FoxgloveTime(1, 500_000_000))

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -168,7 +169,13 @@ class TestFailingRuns:
                 assert (result.status, result.success) == (status, False), values
                 assert reason in result.reason, values
 
-    def test_a_run_that_hangs_is_ended(self, project: LuckProject, tmp_path: Path) -> None:
+    def test_a_run_that_hangs_is_ended(
+        self, project: LuckProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        scratch = tmp_path / "scratch"
+        scratch.mkdir()
+        monkeypatch.setenv("TMPDIR", str(scratch))
+        monkeypatch.setattr(tempfile, "tempdir", None)
         sweep = project.sweep(
             factors={"parameters.luck": {"values": [0.1, 0.9]}}, design="grid", runs=2, parameters={"otherwise": "hang"}
         )
@@ -176,6 +183,7 @@ class TestFailingRuns:
         end = _execute(sweep, tmp_path / "r.db", options=WorkerOptions(workers=2, timeout_s=12.0))
         assert [each.status for each in end.results] == ["finished", "hung"]
         assert "longer than 12 s" in end.results[1].reason
+        assert list(scratch.iterdir()) == [], "a killed process leaves nothing behind"
 
     def test_a_value_that_is_refused_is_a_result_too(self, project: LuckProject, tmp_path: Path) -> None:
         sweep = project.sweep(factors={"parameters.luck": {"values": [0.1, 7.0]}}, design="grid", runs=2)

@@ -11,7 +11,7 @@ import viser
 
 from editor_web.cell_view.layers.bodies import BodyLayer, body_node
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
-from engine.messages import FramePoses
+from engine.messages import FramePoses, VisualGeometry
 from engine.skills.jogging import JogBlock
 from tests.editor_web.fake_sights import description, frames_with_a_person, planned_path, scene_with_a_person
 
@@ -41,6 +41,17 @@ def is_there(server: viser.ViserServer, *nodes: str) -> list[bool]:
 def test_bodies_of_neither_an_arm_nor_the_cell_are_those_of_people(frame: str, node: str) -> None:
     assert body_node(frame, frozenset({"left", "right"})) == node
     assert body_node(frame, frozenset()).startswith("/cell/")
+
+
+def test_a_part_of_a_module_is_no_person_though_its_name_begins_with_neither_arm(server: viser.ViserServer) -> None:
+    bodies, newest = BodyLayer(server), messages_at(0.0)
+    for arm in ("left", "right"):
+        newest.put(arm, description(arm))
+    scene = scene_with_a_person()
+    block = VisualGeometry(name="bin/block", frame="bin/block", kind="sphere", size_m=(0.1,), rgba=(0.5, 0.5, 0.5, 1.0))
+    newest.put("cell", msgspec.structs.replace(scene, geometries=(*scene.geometries, block)))
+    bodies.draw(newest)
+    assert is_there(server, "/cell/bin.block", "/people/bin.block", "/people/anna.hand") == [True, False, True]
 
 
 def test_people_find_their_group_once_the_arms_are_known(server: viser.ViserServer) -> None:

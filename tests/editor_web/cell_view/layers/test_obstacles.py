@@ -10,8 +10,8 @@ import viser
 from editor_web.cell_view.layers.obstacles import ObstacleLayer
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from editor_web.cell_view.rendering.transforms import matrix_of_pose, poses_by_frame
-from engine.messages import Pose
-from engine.messages.shapes import Hull, Obstacle
+from engine.messages import Pose, VisualGeometry
+from engine.messages.shapes import Box, Hull, Obstacle, Solid
 from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.fake_sights import planned_path, planning_scene
 
@@ -41,6 +41,27 @@ def test_every_shape_is_drawn_but_what_the_scene_shows_anyway(
         for name in ("post", "crate", "ball", "rail", "wedge", "cup", "table")
     }
     assert [name for name, is_there in found.items() if not is_there] == ["table"]
+
+
+def test_what_stands_on_a_module_is_drawn_once_and_again_when_it_has_been_away(
+    server: viser.ViserServer, messages: LatestMessages
+) -> None:
+    """A tray has several geometries, whose numbers are no names of bodies."""
+    tray, block = (
+        Obstacle(name=name, solids=(Solid(shape=Box(size_m=(0.1, 0.1, 0.1))),)) for name in ("bin/tray", "bin/block")
+    )
+    scene = new_scene()
+    drawn = [
+        VisualGeometry(name=name, frame=frame, kind="box", size_m=(0.1, 0.1, 0.1), rgba=(0.5, 0.5, 0.5, 1.0))
+        for name, frame in (("bin/tray/0", "world"), ("bin/tray/1", "world"), ("bin/block", "bin/block"))
+    ]
+    messages.put("cell", msgspec.structs.replace(planning_scene(), obstacles=(tray, block), held=()))
+    obstacles = ObstacleLayer(server)
+    for geometries, expected in (((), [True, True]), (drawn, [False, False])):
+        messages.put("cell", msgspec.structs.replace(scene, geometries=(*scene.geometries, *geometries)))
+        obstacles.draw(messages)
+        nodes = [server.scene.get_handle_by_name(f"/obstacles/{name}/0") for name in ("bin.tray", "bin.block")]
+        assert [node is not None for node in nodes] == expected
 
 
 def test_a_held_part_moves_with_the_link_that_holds_it(server: viser.ViserServer, messages: LatestMessages) -> None:

@@ -25,6 +25,7 @@ from engine.event import (
     UndoStarted,
 )
 from engine.runtime.history.event_log import CauseLine, log_line
+from engine.runtime.history.event_texts import event_text
 from engine.runtime.history.live_run import LOG_LINES, LiveRun
 from engine.runtime.history.run_state import NodeLive, PlanLive
 
@@ -89,6 +90,25 @@ def test_a_failure_is_distinguished_from_another_outcome() -> None:
         "root/d": "stopped",
     }
     assert live.state.nodes["root/a"].cause == "nothing held"
+
+
+def test_a_condition_that_does_not_hold_is_no_failure_and_says_why() -> None:
+    """It was red on the page, and an error in the log, where the machine just goes the other way."""
+    because = Cause(message="the condition is false", where="root/where", kind="flow.Decide")
+    event = exited(2, "root/where", "false", cause=because)
+    live = folded(entered(1, "root/where"), event)
+    assert live.state.nodes["root/where"].status == "done"
+    text = event_text(event)
+    assert (text.level, text.cause) == ("info", because)
+
+
+def test_a_condition_in_a_tree_fails_where_the_tree_says_so() -> None:
+    live = folded(
+        entered(1, "root/branch/where"),
+        exited(2, "root/branch/where", "false"),
+        StatusChanged(seq=3, time_s=0.0, path="root/branch/where", status="failure"),
+    )
+    assert live.state.nodes["root/branch/where"].status == "failed"
 
 
 def test_what_lies_inside_a_container_starts_afresh_with_it() -> None:

@@ -168,7 +168,7 @@ async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() ->
 async def test_a_world_that_is_killed_or_frozen_while_it_is_restored_is_reported_and_not_waited_for(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("robots.sim.host.process_host._RESTORE_S", 0.1)
+    monkeypatch.setattr("robots.sim.host.process_host._ANSWER_S", 0.1)
     host = ProcessHost(one_arm())
     async with SimWorld(one_arm(), host=host) as world:
         snapshot = world.snapshot()

@@ -13,7 +13,7 @@ import {
   type OutgoingTransition,
 } from '../../document/editing/model'
 import { disabledText, isPassedOver } from '../../document/editing/disabling'
-import { countInside, drawnNodes, frameOf } from '../../document/editing/expansion'
+import { countInside, drawnNodes } from '../../document/editing/expansion'
 import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 import { parentPath } from '../../document/path'
@@ -59,12 +59,26 @@ export interface DrawnInput {
   readonly declared: (node: EditNode) => readonly string[]
 }
 
-/** All nodes, parents before children. */
-export function canvasNodes(input: DrawnInput): readonly CanvasNode[] {
-  const { scope, arrangement, isOpen } = input
+/** The cards of nodes as they were drawn last: a node that stays the same object, in the same surroundings, keeps its card. */
+export type KeptCards = WeakMap<EditNode, { readonly place: Place; readonly drawn: CardNode }>
+
+/** All nodes, parents before children; `kept` are the cards of the times before. */
+export function canvasNodes(input: DrawnInput, kept: KeptCards = new WeakMap()): readonly CanvasNode[] {
+  const { root, scope, arrangement, isOpen } = input
   const shown = drawnNodes(scope, isOpen)
-  const parents = new Map([scope, ...shown].map((node) => [node.path, surroundings(node, input)]))
-  const cards = shown.flatMap((node) => card(node, parents.get(parentPath(node.path)), input))
+  const around = new Map([
+    [scope.path, surroundings(scope, scope, isForeign(root, scope.path), isPassedOver(root, parentPath(scope.path)))],
+  ])
+  const cards = shown.flatMap((node): readonly CardNode[] => {
+    const [outside, isShown] = [around.get(parentPath(node.path)), isOpen(node.path)]
+    if (!outside) return []
+    if (isShown) {
+      const frame = isBranch(node) ? outside.frame : node
+      around.set(node.path, surroundings(node, frame, outside.isForeign, outside.isPassedOver))
+    }
+    const box = arrangement.boxes.get(node.path)
+    return box ? [keptCard(node, { box, outside, scope: scope.path, isOpen: isShown }, kept)] : []
+  })
   const machines = [scope, ...shown.filter((node) => isMachine(node.kind) && isOpen(node.path))]
   const pills = machines.flatMap((machine) => pillNodes(machine, input))
   const table = arrangement.boxes.get(rulesId(scope.path))
@@ -96,51 +110,86 @@ interface Surroundings {
   readonly isPassedOver: boolean
 }
 
-function surroundings(parent: EditNode, { root, scope }: DrawnInput): Surroundings {
+/** What the card of a node follows from, besides the node. */
+interface Place {
+  readonly box: Box
+  readonly outside: Surroundings
+  /** The path of what fills the canvas. */
+  readonly scope: string
+  readonly isOpen: boolean
+}
+
+function surroundings(parent: EditNode, frame: EditNode, isForeignAbove: boolean, isPassedOverAbove: boolean): Surroundings {
   const { drawn } = pillsOf(parent, [])
   return {
     parent,
-    frame: frameOf(scope, `${parent.path}/`),
+    frame,
     ends: new Set([...parent.children.map((child) => child.name), ...drawn]),
-    isForeign: isForeign(root, `${parent.path}/`),
-    isPassedOver: isPassedOver(root, parent.path),
+    isForeign: isForeignAbove || parent.kind === 'behavior',
+    isPassedOver: isPassedOverAbove || parent.disabled !== false,
   }
 }
 
-function card(node: EditNode, around: Surroundings | undefined, { scope, arrangement, isOpen }: DrawnInput): CardNode[] {
-  const box = arrangement.boxes.get(node.path)
-  if (!box || !around) return []
-  const { parent, frame, ends } = around
+/** A branch of a tree is no container of its own: what is below it is drawn in the frame of the tree. */
+function isBranch(node: EditNode): boolean {
+  return isTreePart(node.kind) && node.kind !== 'tree'
+}
+
+function isSamePlace(one: Place, other: Place): boolean {
+  const [a, b] = [one.outside, other.outside]
+  return (
+    a.parent === b.parent &&
+    a.frame.path === b.frame.path &&
+    a.isForeign === b.isForeign &&
+    a.isPassedOver === b.isPassedOver &&
+    one.scope === other.scope &&
+    one.isOpen === other.isOpen &&
+    isSameBox(one.box, other.box)
+  )
+}
+
+function isSameBox(one: Box, other: Box): boolean {
+  return one.x === other.x && one.y === other.y && one.width === other.width && one.height === other.height
+}
+
+function keptCard(node: EditNode, place: Place, kept: KeptCards): CardNode {
+  const before = kept.get(node)
+  if (before && isSamePlace(before.place, place)) return before.drawn
+  const drawn = card(node, place)
+  kept.set(node, { place, drawn })
+  return drawn
+}
+
+function card(node: EditNode, { box, outside, scope, isOpen }: Place): CardNode {
+  const { parent, frame, ends } = outside
   const transitions = outgoingTransitions(parent, node)
-  const isTwig = isTreePart(node.kind) && node.kind !== 'tree'
-  const isShown = isOpen(node.path) && isFrame(node)
+  const isTwig = isBranch(node)
+  const isShown = isOpen && isFrame(node)
   const isInTree = isTreePart(parent.kind)
-  return [
-    {
-      id: node.path,
-      type: isTwig ? 'twig' : isShown ? 'frame' : 'leaf',
-      position: { x: box.x, y: box.y },
-      ...sized(box),
-      handles: isTwig || isInTree ? twigHandles(box) : transitionHandles(box, transitions),
-      ...(frame === scope ? {} : { parentId: frame.path }),
-      draggable: !around.isForeign,
-      data: {
-        node,
-        transitions,
-        drawn: new Set(transitions.filter((each) => each.target !== undefined && ends.has(each.target)).map((each) => each.outcome)),
-        isInitial: isMachine(parent.kind) && parent.initial === node.name,
-        isOpen: isTwig ? isOpen(node.path) : isShown,
-        isForeign: around.isForeign,
-        isPassedOver: around.isPassedOver || node.disabled !== false,
-        isInTree,
-        count: countInside(node),
-        entryY: entryY(box.height, transitions.length),
-      },
-      ariaLabel: spoken(node, transitions),
-      sourcePosition: Position.Right,
-      targetPosition: Position.Left,
+  return {
+    id: node.path,
+    type: isTwig ? 'twig' : isShown ? 'frame' : 'leaf',
+    position: { x: box.x, y: box.y },
+    ...sized(box),
+    handles: isTwig || isInTree ? twigHandles(box) : transitionHandles(box, transitions),
+    ...(frame.path === scope ? {} : { parentId: frame.path }),
+    draggable: !outside.isForeign,
+    data: {
+      node,
+      transitions,
+      drawn: new Set(transitions.filter((each) => each.target !== undefined && ends.has(each.target)).map((each) => each.outcome)),
+      isInitial: isMachine(parent.kind) && parent.initial === node.name,
+      isOpen: isTwig ? isOpen : isShown,
+      isForeign: outside.isForeign,
+      isPassedOver: outside.isPassedOver || node.disabled !== false,
+      isInTree,
+      count: countInside(node),
+      entryY: entryY(box.height, transitions.length),
     },
-  ]
+    ariaLabel: spoken(node, transitions),
+    sourcePosition: Position.Right,
+    targetPosition: Position.Left,
+  }
 }
 
 /** Said beforehand, so that the canvas needs not look at what it draws, nor draw what nobody sees. */

@@ -4,7 +4,7 @@ import { useCallback, useEffect, useMemo, useState } from 'react'
 import { choose } from './actions'
 import { drawInBatches } from './batchedDrawing'
 import { setCanvasPositions } from './canvasPositions'
-import { canvasNodes, type CanvasEdge, type CanvasNode } from './elements'
+import { canvasNodes, type CanvasEdge, type CanvasNode, type KeptCards } from './elements'
 import { editor, useEditor } from './store'
 import type { Arranged } from './useArrangement'
 import { useStableList } from './useStableList'
@@ -24,7 +24,8 @@ export interface CanvasNodes {
 export function useCanvasNodes(arranged: Arranged): CanvasNodes {
   const { getInternalNode } = useReactFlow<CanvasNode, CanvasEdge>()
   const selection = useEditor((s) => s.selection)
-  const computed = useStableList(useMemo(() => canvasNodes(arranged), [arranged]))
+  const [kept] = useState((): KeptCards => new WeakMap())
+  const computed = useStableList(useMemo(() => canvasNodes(arranged, kept), [arranged, kept]))
   const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
   const [given, setGiven] = useState<Arranged>()
 
