@@ -154,4 +154,5 @@ it('tells where an item will be in the world, in what it stands in', () => {
   expect(shownItem('fixtures', { shape: 'tray', size_m: [1, 1, 0.2] }, frames)).toMatchObject({ pose: { xyz: [0, 0, 0.1] }, shape: 'box' })
   expect(shownItem('fixtures', { ...box, size_m: [1, 1, 0] }, frames)?.shape).toBeUndefined()
   expect(shownItem('fixtures', { at: { frame: 'nowhere' } }, frames)).toBeUndefined()
+  expect(shownItem('modules', { module: 'bin', plugged: false }, frames)).toBeUndefined()
 })

@@ -95,6 +95,7 @@ export function fieldsFor(section: Section, value: Dict<unknown>, { frames, conn
       return [
         { kind: 'choice', path: ['module'], label: 'Module', usual: '', choices: folders },
         { kind: 'choice', path: ['connector'], label: 'Docked to', usual: '', choices: connectors },
+        { kind: 'switch', path: ['plugged'], label: 'Plugged when the cell is opened', usual: true },
       ]
   }
 }
@@ -360,5 +361,6 @@ export function frameOf(section: Section, value: Dict<unknown>): string {
     modules: ['connector'],
   }
   const written = valueAt(value, paths[section])
-  return typeof written === 'string' ? written : WORLD
+  // A module that is plugged later may name no connector yet.
+  return typeof written === 'string' ? written : section === 'modules' ? '' : WORLD
 }

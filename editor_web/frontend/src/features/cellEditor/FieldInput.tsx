@@ -51,8 +51,8 @@ export function FieldInput({ field, value, onChange }: FieldInputProps) {
         <Switch
           size="xs"
           label={field.label}
-          checked={value === true}
-          onChange={(event) => onChange(event.currentTarget.checked || undefined)}
+          checked={(value ?? field.usual) === true}
+          onChange={(event) => onChange(event.currentTarget.checked === field.usual ? undefined : event.currentTarget.checked)}
         />
       )
   }

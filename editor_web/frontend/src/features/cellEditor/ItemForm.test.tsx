@@ -102,6 +102,19 @@ it('shows the findings of the item, and has the lengths of its shape', async () 
   expect(screen.queryByLabelText('Size x')).toBeNull()
 })
 
+it('writes a switch only where it is not as usual', async () => {
+  const module: DraftItem = { ...TABLE, section: 'modules', name: 'bin', value: { module: 'bin', connector: 'dock' } }
+  const user = show(<ItemForm item={module} surroundings={surroundingsOf(DRAFT, ['bin'])} onSelect={vi.fn()} />)
+  const plugged = screen.getByRole('switch', { name: 'Plugged when the cell is opened' })
+  expect(plugged).toBeChecked()
+  await user.click(plugged)
+  await user.click(screen.getByRole('button', { name: 'Apply' }))
+  await waitFor(() => expect(server().bodies(EDITS)).toHaveLength(1))
+  expect(server().bodies(EDITS)[0]).toMatchObject({ edits: [{ name: 'bin', field: ['plugged'], value: false }] })
+  await user.click(plugged)
+  expect(screen.getByRole('button', { name: 'Apply' })).toBeDisabled()
+})
+
 it('deletes it, where nothing else names it', async () => {
   const { user, onSelect } = form()
   server().on(EDITS, { draft: DRAFT, refused: { message: 'named by `slot`', hint: 'first', index: 0, losses: [] } })
