@@ -134,6 +134,8 @@ def test_a_change_on_disk_is_for_a_person_to_decide(browser: Browser, served: tu
         require_accessible(page, "a conflict of the cell")
         conflict.get_by_role("button", name="Overwrite with yours").click()
         expect(conflict).to_have_count(0)
+        # The conflict goes first; the text is written when nothing is unsaved any more.
+        expect(page.locator("[data-unsaved]")).to_have_count(0)
         assert file.read_text() == CELL.replace("mass_kg: 0.5", "mass_kg: 0.6")
 
 
