@@ -84,6 +84,7 @@ _ROUTERS = (
     behaviors.router,
     relations.router,
     documents.router,
+    open_cell.documents,
     catalogue.router,
     search.router,
     runs.router,

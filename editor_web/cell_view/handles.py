@@ -6,7 +6,7 @@ A handle does not move anything itself: it is drawn at its frame and reports how
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -34,11 +34,15 @@ class HandlePull:
 
 @dataclass(frozen=True, kw_only=True)
 class DragHandle:
-    """A handle at a frame; `turns` allows rotation. `pulled` is called on viser's thread."""
+    """A handle at a frame, or at a pose `at` in the world; `turns` allows rotation.
 
-    frame: str
+    `pulled` is called on viser's thread.
+    """
+
+    frame: str = ""
     turns: bool
     pulled: Callable[[HandlePull], None]
+    at: WorldPose | None = None
 
 
 @dataclass(kw_only=True)
@@ -66,6 +70,7 @@ class DragHandles:
         self._given: dict[str, DragHandle] = {}
         self._clients: dict[int, _Client] = {}
         self._frames: FramePoses | None = None
+        self._is_due = False
         # Coroutines, because these run in the context of the connection, where `PAGE` and `ROLE` are.
         server.on_client_connect(self._connected)
         server.on_client_disconnect(self._disconnected)
@@ -74,7 +79,7 @@ class DragHandles:
         """Give a page this handle, instead of its previous one."""
         with self._lock:
             self._given[page] = handle
-            self._frames = None
+            self._is_due = True
         self._changed()
 
     def take(self, page: str, handle: DragHandle) -> None:
@@ -83,19 +88,20 @@ class DragHandles:
             if self._given.get(page) is not handle:
                 return
             del self._given[page]
-            self._frames = None
+            self._is_due = True
         self._changed()
 
     def draw(self, latest: LatestMessages) -> None:
         """Draw the handles that are not dragged at their frames."""
         with self._lock:
-            if latest.frames is None or latest.frames is self._frames:
+            if latest.frames is self._frames and not self._is_due:
                 return
-            self._frames = latest.frames
+            self._frames, self._is_due = latest.frames, False
             clients = [client for client in self._clients.values() if client.may_operate]
-            poses = poses_by_frame(latest.frames)
+            poses: Mapping[str, WorldPose] = poses_by_frame(latest.frames) if latest.frames is not None else {}
             for client in clients:
-                self._draw(client, poses.get(given.frame) if (given := self._given.get(client.page)) else None)
+                given = self._given.get(client.page)
+                self._draw(client, (given.at or poses.get(given.frame)) if given is not None else None)
 
     def _draw(self, client: _Client, pose: WorldPose | None) -> None:
         given = self._given.get(client.page)
@@ -123,7 +129,7 @@ class DragHandles:
             client.is_held = pull.phase != "end"
             # After the release, it is drawn at its frame again.
             client.placed = None
-            self._frames = None
+            self._is_due = True
         given.pulled(pull)
         if pull.phase == "end":
             self._changed()
@@ -133,7 +139,7 @@ class DragHandles:
             self._clients[client.client_id] = _Client(
                 handle=client, page=PAGE.get(), may_operate=ROLE.get() == OPERATOR
             )
-            self._frames = None
+            self._is_due = True
         self._changed()
 
     async def _disconnected(self, client: viser.ClientHandle) -> None:

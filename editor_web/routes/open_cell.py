@@ -1,15 +1,31 @@
-"""The open cell: what it consists of, whether its devices are connected, and reconnection of lost ones."""
+"""The open cell: what it consists of, whether its devices are connected, and reconnection of lost ones.
+
+Beside it the documents of the cell and of its modules under edit: only `PUT` changes a file, nothing changes the open
+cell.
+"""
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from fastapi import Query
 from starlette.concurrency import run_in_threadpool
 
+from editor_web.http_bodies.cell_document_bodies import CellDocumentBody, CellEditsBody
 from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody, SimulationBody
+from editor_web.http_bodies.document_bodies import ConflictBody, SaveBody, SaveResultBody, TextBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.cell import CellConnection, CellItems, DeviceDetails, devices_of_cell, items_of_cell
+from engine.editing import ReferringBehavior
+from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
+documents = WireRouter(
+    prefix="/api/v1/cell_documents",
+    tags=["cell"],
+    responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}},
+)
 
 
 @router.get("/items")
@@ -24,6 +40,14 @@ async def get_items(services: ServicesOf) -> CellItems:
 async def get_devices(services: ServicesOf) -> tuple[DeviceDetails, ...]:
     """Return the devices with a driver: what it can do, what enabling does, its options and their schema."""
     return await run_in_threadpool(devices_of_cell, services.backend.cell.document)
+
+
+@router.get("/naming_behaviors")
+async def list_naming_behaviors(
+    services: ServicesOf, name: Annotated[str, Query(min_length=1, max_length=200)]
+) -> tuple[ReferringBehavior, ...]:
+    """Return the saved behaviors for the open cell that name one of its items, or what stands on a module."""
+    return await run_in_threadpool(services.documents.naming, name)
 
 
 @router.get("/connection")
@@ -46,3 +70,35 @@ async def switch_simulation(body: SimulationBody, services: ServicesOf) -> None:
     All connections end; the server answers again at the same address once the cell is open.
     """
     await services.backend.reopening.request(body.simulated)
+
+
+@documents.get("")
+def list_cell_documents(services: ServicesOf) -> tuple[CellDocumentName, ...]:
+    """List the document of the open cell, if it is in the project, and the modules of the project."""
+    return services.documents.cells.listed()
+
+
+@documents.post("/{document_id:path}/draft")
+def read_cell_draft(document_id: str, body: TextBody, services: ServicesOf) -> CellDraft:
+    """Read and check a text as the document's; one that cannot be read has findings and no items."""
+    return services.documents.cells.examine(document_id, body.text)
+
+
+@documents.post("/{document_id:path}/edits")
+def edit_cell_document(document_id: str, body: CellEditsBody, services: ServicesOf) -> CellEditAnswer:
+    """Apply edits to a text, all or none; nothing is saved."""
+    return services.documents.cells.edit(document_id, body.text, body.edits)
+
+
+@documents.get("/{document_id:path}")
+def get_cell_document(document_id: str, services: ServicesOf) -> CellDocumentBody:
+    """Return a document on disk, with its items and findings."""
+    opened = services.documents.cells.open(document_id)
+    return CellDocumentBody(id=opened.stored.id, saved_at=opened.stored.saved_at_s, draft=opened.draft)
+
+
+@documents.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
+def save_cell_document(document_id: str, body: SaveBody, services: ServicesOf) -> SaveResultBody:
+    """Write a document; 409 with both texts and their merge, if any, if it has changed on disk since it was read."""
+    saved = services.documents.cells.save(document_id, body.text, base_hash=body.base_hash)
+    return SaveResultBody(hash=saved.hash, saved_at=saved.saved_at_s)

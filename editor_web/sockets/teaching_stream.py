@@ -5,13 +5,15 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Annotated, cast
 
 import msgspec
 from fastapi import Query, Request, Response, WebSocket
 from msgspec.structs import asdict
 
-from editor_web.cell_view import NO_MARKS, CellView, Marks
+from editor_web.cell_view import NO_MARKS, CellView, DragHandle, HandlePull, Marks
+from editor_web.cell_view.rendering.transforms import WorldPose
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, run_while_connected
 from editor_web.routes.services import ServicesOf, role_of, services_of
 from editor_web.routes.wire_router import WireRouter
@@ -37,6 +39,7 @@ from editor_web.teaching.teaching_messages import (
     EntryPage,
     FromPage,
     HelpingHandFrame,
+    ItemHandleMoved,
     JogBlockFrame,
     JogStatus,
     JogVelocity,
@@ -47,6 +50,7 @@ from editor_web.teaching.teaching_messages import (
     PrimitiveComparison,
     PushToolBody,
     RefusedFrame,
+    ShowItemHandle,
     ShowMarks,
     StartJog,
     StopJog,
@@ -157,6 +161,7 @@ class _Page:
         self._are_entries_changed = False
         self._held_by = ""
         self._has_marks = False
+        self._handle: DragHandle | None = None
         self._previews: set[tuple[str, int]] = set()
         self._preview_tasks: dict[int, asyncio.Task[None]] = {}
 
@@ -175,6 +180,7 @@ class _Page:
         await self._clear_previews()
         if self._has_marks:
             self._mark(NO_MARKS)
+        self._show_handle(ShowItemHandle())
         for unsubscribe in self._unsubscribe:
             unsubscribe()
 
@@ -191,6 +197,8 @@ class _Page:
                 self._waiting.append(
                     RefusedFrame(what="jog", message="you may look only", hint="log in with the operator token")
                 )
+            case ShowItemHandle():
+                self._show_handle(request)
             case PrepareJogging():
                 self._preparation.begin(request.arm)
             case StartJog():
@@ -284,6 +292,25 @@ class _Page:
         if self._view is not None:
             self._has_marks = not marks.is_empty
             self._view.show_marks(self._name, marks)
+
+    def _show_handle(self, request: ShowItemHandle) -> None:
+        """Show a handle in the place of the one before; a drag of it is only told to the page."""
+        if self._view is None:
+            return
+        if self._handle is not None:
+            self._view.take_handle(self._name, self._handle)
+            self._handle = None
+        if request.at is not None:
+            loop = asyncio.get_running_loop()
+
+            def pulled(pull: HandlePull) -> None:
+                moved = ItemHandleMoved(phase=pull.phase, xyz=pull.pose.xyz, xyzw=pull.pose.xyzw)
+                with suppress(RuntimeError):  # the loop has just been closed, and with it the page's connection
+                    loop.call_soon_threadsafe(self._waiting.append, moved)
+
+            xyz, xyzw = request.at
+            self._handle = DragHandle(turns=request.turns, at=WorldPose(xyz=xyz, xyzw=xyzw), pulled=pulled)
+            self._view.give_handle(self._name, self._handle)
 
     async def _clear_previews(self, place: int = 0) -> None:
         """Clear the preview at a place; `place` 0 clears all."""

@@ -9,7 +9,7 @@ from msgspec import Meta
 
 from editor_web.cell_view import Marks
 from editor_web.http_bodies.common_bodies import Name, RequestBody
-from engine.messages import RobotDescription
+from engine.messages import Quaternion, RobotDescription, Vector3
 from engine.skills.dmp import CartFit, JointFit
 from engine.skills.entries import EntryChanged
 from engine.skills.jogging import JogBlock
@@ -164,6 +164,21 @@ class ShowMarks(Marks, frozen=True, kw_only=True, tag="mark", tag_field="k"):
     """From the page: what is marked in its 3D view, in the place of what was before."""
 
 
+class ShowItemHandle(msgspec.Struct, frozen=True, kw_only=True, tag="place", tag_field="k"):
+    """From the page: show a handle at a pose in the world, or none; it moves nothing, the page is told where it is."""
+
+    at: tuple[Vector3, Quaternion] | None = None
+    turns: bool = True
+
+
+class ItemHandleMoved(msgspec.Struct, frozen=True, kw_only=True, tag="placed", tag_field="k"):
+    """To the page: where its handle is dragged in the world; at the phase `end` the mouse is up."""
+
+    phase: Literal["start", "update", "end"]
+    xyz: Vector3
+    xyzw: Quaternion
+
+
 class PrimitiveComparison(msgspec.Struct, frozen=True, kw_only=True):
     """A recording and the primitive learned from it, as the arm would execute them, and their fit errors."""
 
@@ -221,5 +236,6 @@ ToPage = (
     | JogReadiness
     | JogBlockFrame
     | RefusedFrame
+    | ItemHandleMoved
 )
-FromPage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks
+FromPage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks | ShowItemHandle

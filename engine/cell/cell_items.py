@@ -89,7 +89,7 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Text:
+class TextExcerpts:
     """A document as it is now, with its lines; without `source` while it cannot be read."""
 
     source: DocumentSource | None = None
@@ -100,24 +100,42 @@ class _Text:
         """Its plain data; None while it cannot be read."""
         return self.source.data if self.source is not None else None
 
+    def of(self, path: Sequence[str]) -> tuple[str, int]:
+        """Return the lines of an item and the number of the first one, from 1; no text and 0 where it is no more.
 
-def _read(file: Path) -> _Text:
+        They end before the next key of the item or of what contains it.
+        """
+        place, later = (self.source.place, []) if self.source is not None else (None, list[int]())
+        for step in path:
+            children = place.children if place is not None else None
+            place = children.get(step) if children is not None else None
+            if place is None or children is None:
+                return "", 0
+            later += [each.key_line for each in children.values()]
+        if place is None or place.file is not None:
+            return "", 0
+        end = min((line for line in later if line > place.key_line), default=len(self.lines))
+        return "\n".join(_own(self.lines[place.key_line : end], place)), place.key_line + 1
+
+
+def _read(file: Path) -> TextExcerpts:
     try:
         content = load_text(file)
-        return _Text(source=parse_source(content, file=str(file)), lines=content.decode().splitlines())
+        return TextExcerpts(source=parse_source(content, file=str(file)), lines=content.decode().splitlines())
     except DocumentError:
-        return _Text()
+        return TextExcerpts()
 
 
-def _with_lines(item: CellItem, cell: Cell, text: _Text, modules: Mapping[str, _Text]) -> CellItem:
+def _with_lines(item: CellItem, cell: Cell, text: TextExcerpts, modules: Mapping[str, TextExcerpts]) -> CellItem:
     """Return the item with its lines, of the document of its module where it stands on one."""
     section, _, name = item.path.partition("/")
     module, _, key = name.partition("/")
     if section == "robots" or module not in modules or not key:
-        return msgspec.structs.replace(item, **_excerpt(item.path.split("/"), text))
-    found = _excerpt([section, key], modules[module])
+        lines, line = text.of(item.path.split("/"))
+        return msgspec.structs.replace(item, text=lines, line=line)
+    lines, line = modules[module].of([section, key])
     file = os.path.relpath(cell.modules[module].file, cell.file.parent)
-    return msgspec.structs.replace(item, **found, file=Path(file).as_posix())
+    return msgspec.structs.replace(item, text=lines, line=line, file=Path(file).as_posix())
 
 
 def _items(cell: Cell) -> Iterator[CellItem]:
@@ -178,22 +196,6 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each == MODULES_TOPIC)
         case "fixture" | "frame" | "person" | "store":
             return ()
-
-
-def _excerpt(path: Sequence[str], text: _Text) -> dict[str, object]:
-    """Return the lines of an item, up to the next key of it or of what contains it; none where it is no more."""
-    lines = text.lines
-    place, later = (text.source.place, []) if text.source is not None else (None, list[int]())
-    for step in path:
-        children = place.children if place is not None else None
-        place = children.get(step) if children is not None else None
-        if place is None or children is None:
-            return {}
-        later += [each.key_line for each in children.values()]
-    if place is None or place.file is not None:
-        return {}
-    end = min((line for line in later if line > place.key_line), default=len(lines))
-    return {"text": "\n".join(_own(lines[place.key_line : end], place)), "line": place.key_line + 1}
 
 
 def _own(lines: list[str], place: PositionTree) -> list[str]:

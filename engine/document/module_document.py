@@ -56,7 +56,15 @@ def load_module(folder: Path) -> Module:
         DocumentError: the file cannot be read or is not a valid module; `where` is the position.
     """
     file = folder if folder.suffix else folder / MODULE_FILE
-    source = load_source(file)
+    return module_of_source(load_source(file), file=file)
+
+
+def module_of_source(source: DocumentSource, *, file: Path) -> Module:
+    """Return the module that parsed data describe.
+
+    Raises:
+        DocumentError: as `load_module`.
+    """
     document = decode_document(source, ModuleDocument)
     require_sizes(document.fixtures, document.parts, source)
     require_frames(

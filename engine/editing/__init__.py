@@ -18,7 +18,8 @@ from engine.editing.edits.apply import EditRefusal, EditResult, apply_edits, cop
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.pictures.pdf import pdf_of
 from engine.editing.project_context import ProjectContext
-from engine.editing.references import ReferringBehavior, move_with_references, referrers
+from engine.editing.references import move_with_references, referrers
+from engine.editing.referring_behavior import ReferringBehavior
 from engine.editing.state_source import StateSource, state_source
 from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
 from engine.editing.targets.target_checks import TargetChecks

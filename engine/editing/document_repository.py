@@ -17,14 +17,23 @@ from engine.cell.cell_names import CellNameKind, cell_names
 from engine.check.analyzed_behavior import Catalogue
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
-from engine.document.text.yaml_source import MAX_BYTES, parse_source
+from engine.document.text.yaml_source import parse_source
 from engine.editing.analysis.data_flow import KeyFlow, data_flow
 from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
+from engine.editing.cells.cell_documents import CellDocuments
+from engine.editing.cells.naming_behaviors import behaviors_naming
 from engine.editing.draft_cache import DraftCache, EditAnswer
 from engine.editing.edits.edit import AnyEdit
 from engine.editing.project_context import ProjectContext, StoredEntryNames
-from engine.editing.stored_document import DocumentConflict, NoSuchDocument, StoredDocument
+from engine.editing.referring_behavior import ReferringBehavior
+from engine.editing.stored_document import (
+    DocumentConflict,
+    NoSuchDocument,
+    StoredDocument,
+    read_stored,
+    writing_errors,
+)
 from engine.editing.templates import new_text
 from engine.editing.text.draft import Draft
 from engine.editing.text.node_merge import NodeMerge, Side, merge_by_nodes
@@ -66,6 +75,8 @@ class DocumentRepository:
         self._project = project.resolve()
         self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
+        self.cells = CellDocuments(self._project, self._versions, writing=self._writing, cell=cell)
+        """The document of the open cell and the modules of the project as editable files."""
         self._drafts = DraftCache()
         self.states = StateReloading(self._project, catalogue)
         """What watches the modules of the project's own states."""
@@ -88,6 +99,13 @@ class DocumentRepository:
     def referable(self) -> tuple[BehaviorReferenceView, ...]:
         """Return the behaviors of the project that others may reference, sorted by id."""
         return behavior_reference_views(self.library)
+
+    def naming(self, item: str) -> tuple[ReferringBehavior, ...]:
+        """Return the saved behaviors for the open cell that name one of its items; none without a cell."""
+        if self.cell is None:
+            return ()
+        context = ProjectContext(self.catalogue, self._project, self._project)
+        return behaviors_naming(item, cell=self.cell, library=self.library, signature_of=context.signature)
 
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names of the open cell by kind, as the check knows them; none without a cell."""
@@ -137,7 +155,7 @@ class DocumentRepository:
             DocumentError: it cannot be read as text, or is not a behavior.
         """
         file = self.file_of(document_id)
-        opened = self._read(document_id, file)
+        opened = read_stored(document_id, file)
         _require_behavior(opened.text, document_id)
         with self._writing:
             self._remember(document_id, opened.text)
@@ -194,7 +212,7 @@ class DocumentRepository:
         file = self.file_of(document_id)
         _require_document(text, document_id)
         with self._changing(document_id):
-            there = self._read(document_id, file)
+            there = read_stored(document_id, file)
             if there.hash == text_hash(text):
                 return there
             if there.hash != base_hash:
@@ -205,11 +223,11 @@ class DocumentRepository:
                 raise DocumentConflict(there, self._merged(there, text, base_hash, {}))
             write_atomically(file, text)
             self._versions.keep(document_id, text, by="editor")
-        return self._read(document_id, file)
+        return read_stored(document_id, file)
 
     def merge(self, document_id: str, text: str, *, base_hash: str, sides: Mapping[str, Side]) -> DocumentConflict:
         """Return what a save of this text meets, merged with these choices; nothing is written."""
-        there = self._read(document_id, self.file_of(document_id))
+        there = read_stored(document_id, self.file_of(document_id))
         return DocumentConflict(there, self._merged(there, text, base_hash, sides))
 
     def create(self, document_id: str, *, template: str = "machine", name: str = "") -> StoredDocument:
@@ -240,7 +258,7 @@ class DocumentRepository:
 
     def duplicate(self, document_id: str, new_id: str) -> StoredDocument:
         """Copy a document; raises DocumentError if the new id is taken."""
-        return self._put(new_id, self.file_of(new_id), self._read(document_id, self.file_of(document_id)).text)
+        return self._put(new_id, self.file_of(new_id), read_stored(document_id, self.file_of(document_id)).text)
 
     def rename(self, document_id: str, new_id: str) -> StoredDocument:
         """Rename a document with its versions. References to it in other documents do not change.
@@ -252,13 +270,13 @@ class DocumentRepository:
         if (file.suffix == ".json") != (new.suffix == ".json"):
             raise DocumentError("a rename does not convert YAML to JSON", where=new_id, hint="keep the file extension")
         with self._changing(document_id):
-            there = self._read(document_id, file)
+            there = read_stored(document_id, file)
             _require_free(new, new_id)
             self._versions.keep(document_id, there.text)
             new.parent.mkdir(parents=True, exist_ok=True)
             file.rename(new)
             self._versions.rename(document_id, new_id)
-        return self._read(new_id, new)
+        return read_stored(new_id, new)
 
     def delete(self, document_id: str) -> None:
         """Delete a document; its text is kept as a version.
@@ -268,7 +286,7 @@ class DocumentRepository:
         """
         file = self.file_of(document_id)
         with self._changing(document_id):
-            self._versions.keep(document_id, self._read(document_id, file).text)
+            self._versions.keep(document_id, read_stored(document_id, file).text)
             file.unlink()
 
     def versions(self, document_id: str) -> tuple[DocumentVersion, ...]:
@@ -280,7 +298,7 @@ class DocumentRepository:
         file = self.file_of(document_id)
         with self._writing:
             if file.is_file():
-                self._remember(document_id, self._read(document_id, file).text)
+                self._remember(document_id, read_stored(document_id, file).text)
             found = self._versions.all(document_id)
         if not found:
             raise NoSuchDocument("there is no such document", where=document_id)
@@ -324,22 +342,15 @@ class DocumentRepository:
     def hash_on_disk(self, document_id: str) -> str | None:
         """Return the hash of a document as it is on disk; None if there is no such document."""
         try:
-            return self._read(document_id, self.file_of(document_id)).hash
+            return read_stored(document_id, self.file_of(document_id)).hash
         except DocumentError:
             return None  # deleted, or not text: nothing to compare with
 
     @contextmanager
     def _changing(self, document_id: str) -> Generator[None]:
         """Lock the files of the project; an OS error is raised with the document and a hint."""
-        with self._writing:
-            try:
-                yield
-            except OSError as error:
-                raise DocumentError(
-                    f"the document cannot be written: {error.strerror}",
-                    where=document_id,
-                    hint="grant this server write permission in the project folder, or free disk space",
-                ) from error
+        with self._writing, writing_errors(document_id):
+            yield
 
     def _remember(self, document_id: str, text: str) -> None:
         """Keep the content of a file as a version; a read-only project can still be read."""
@@ -361,23 +372,7 @@ class DocumentRepository:
             file.parent.mkdir(parents=True, exist_ok=True)
             write_atomically(file, text)
             self._versions.keep(document_id, text, by="editor")
-        return self._read(document_id, file)
-
-    def _read(self, document_id: str, file: Path) -> StoredDocument:
-        try:
-            if not file.is_file():
-                raise NoSuchDocument("there is no such document", where=document_id, hint="see the list of behaviors")
-            with file.open("rb") as stream:
-                content = stream.read(MAX_BYTES + 1)
-            saved_at_s = file.stat().st_mtime
-            text = content.decode("utf-8")
-        except UnicodeDecodeError as error:
-            raise DocumentError("the file is not UTF-8", where=document_id, hint="save it as UTF-8") from error
-        except OSError as error:
-            raise DocumentError(f"cannot read this file: {error.strerror}", where=document_id) from error
-        if len(content) > MAX_BYTES:
-            raise DocumentError("the file is too large for the editor", where=document_id)
-        return StoredDocument(id=document_id, text=text, hash=text_hash(text), saved_at_s=saved_at_s)
+        return read_stored(document_id, file)
 
 
 def _require_document(text: str, document_id: str) -> None:

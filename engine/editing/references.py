@@ -10,19 +10,11 @@ from pathlib import Path, PurePosixPath
 from engine.editing.document_repository import DocumentRepository
 from engine.editing.edits.apply import apply_edits
 from engine.editing.edits.edit import AnyEdit, SetDocument, SetField
+from engine.editing.referring_behavior import ReferringBehavior
 from engine.editing.stored_document import StoredDocument
 from engine.editing.text.draft import Draft
 from engine.editing.text.outline import Outline
 from engine.errors import DocumentError
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReferringBehavior:
-    """A behavior that references another one: its id and name, and the referencing nodes."""
-
-    id: str
-    name: str
-    paths: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
@@ -20,10 +20,22 @@ _AXES_RADIUS_M = 0.003
 
 
 _MOST_POINTS = 2500
+_Length = Annotated[float, msgspec.Meta(gt=0.0, le=1000.0)]
+
+
+class MarkedBody(msgspec.Struct, frozen=True, kw_only=True):
+    """A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter.
+
+    `pose` is that of its centre in the world.
+    """
+
+    shape: Literal["box", "cylinder", "sphere"]
+    size_m: Annotated[tuple[_Length, ...], msgspec.Meta(min_length=1, max_length=3)]
+    pose: tuple[Vector3, Quaternion]
 
 
 class Marks(msgspec.Struct, frozen=True, kw_only=True):
-    """What a page sees marked in the world: points, a box by its least and greatest coordinates, the axes of a pose.
+    """What a page sees marked: points, a box by its least and greatest coordinates, the axes of a pose, a body.
 
     Positions are in metres, the orientation is a quaternion x y z w.
     """
@@ -31,11 +43,12 @@ class Marks(msgspec.Struct, frozen=True, kw_only=True):
     points: Annotated[tuple[Vector3, ...], msgspec.Meta(max_length=_MOST_POINTS)] = ()
     box: tuple[Vector3, Vector3] | None = None
     axes: tuple[Vector3, Quaternion] | None = None
+    body: MarkedBody | None = None
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing is marked."""
-        return not self.points and self.box is None and self.axes is None
+        return not self.points and self.box is None and self.axes is None and self.body is None
 
 
 NO_MARKS = Marks()
@@ -88,4 +101,22 @@ class MarkLayer:
                     wxyz=(w, x, y, z),
                 )
             )
+        if marks.body is not None:
+            added.append(self._solid(marks.body))
         return added
+
+    def _solid(self, body: MarkedBody) -> viser.SceneNodeHandle:
+        scene, name = self._server.scene, f"{TAUGHT}/marks/body"
+        first_m, last_m = body.size_m[0], body.size_m[-1]
+        xyz, (x, y, z, w) = body.pose
+        wxyz = (w, x, y, z)
+        match body.shape:
+            case "sphere":
+                return scene.add_icosphere(name, radius=first_m / 2.0, color=_COLOUR, opacity=_OPACITY, position=xyz)
+            case "cylinder":
+                return scene.add_cylinder(
+                    name, first_m / 2.0, last_m, color=_COLOUR, opacity=_OPACITY, position=xyz, wxyz=wxyz
+                )
+            case "box":
+                edges = (first_m, body.size_m[len(body.size_m) // 2], last_m)
+                return scene.add_box(name, dimensions=edges, color=_COLOUR, opacity=_OPACITY, position=xyz, wxyz=wxyz)

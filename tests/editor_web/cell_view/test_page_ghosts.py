@@ -9,7 +9,7 @@ import pytest
 import viser
 
 from editor_web.cell_view import NO_MARKS, CellView, Marks
-from editor_web.cell_view.layers.marks import MarkLayer
+from editor_web.cell_view.layers.marks import MarkedBody, MarkLayer
 from editor_web.cell_view.layers.path_view import GhostLayer, PathLayer
 from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.skills.planning import PathPreview
@@ -18,6 +18,7 @@ from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.fake_sights import description, planned_path
 from tests.editor_web.viser_page import opened_view, viser_page
 
+TURNED = ((1.0, 2.0, 3.0), (1.0, 0.0, 0.0, 0.0))
 NOBODY_LOOKS = PathPreview(robot="left", state="none")
 
 
@@ -117,6 +118,30 @@ def test_marks_take_the_place_of_those_before(server: viser.ViserServer) -> None
     assert (tuple(axes.position), tuple(axes.wxyz)) == ((1.0, 2.0, 3.0), (0.0, 1.0, 0.0, 0.0))
     layer.draw(NO_MARKS)
     assert server.scene.get_handle_by_name("/taught/marks/box") is None
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        (MarkedBody(shape="box", size_m=(0.4, 0.2, 0.1), pose=TURNED), {"dimensions": (0.4, 0.2, 0.1)}),
+        (MarkedBody(shape="cylinder", size_m=(0.4, 0.1), pose=TURNED), {"radius": 0.2, "height": 0.1}),
+        (MarkedBody(shape="sphere", size_m=(0.4,), pose=TURNED), {"radius": 0.2}),
+    ],
+    ids=lambda value: value.shape if isinstance(value, MarkedBody) else "",
+)
+def test_a_marked_body_stands_where_it_will_be(
+    server: viser.ViserServer, body: MarkedBody, expected: dict[str, object]
+) -> None:
+    """Its size, its centre, and the rotation of its axes."""
+    layer = MarkLayer(server)
+    layer.draw(Marks(body=body))
+    drawn = server.scene.get_handle_by_name("/taught/marks/body")
+    assert drawn is not None
+    assert {name: getattr(drawn, name) for name in expected} == expected
+    assert tuple(drawn.position) == (1.0, 2.0, 3.0)
+    assert body.shape == "sphere" or tuple(drawn.wxyz) == (0.0, 1.0, 0.0, 0.0)
+    layer.draw(NO_MARKS)
+    assert server.scene.get_handle_by_name("/taught/marks/body") is None
 
 
 async def test_only_the_page_that_asked_sees_marks() -> None:

@@ -45,4 +45,5 @@ async def test_a_viewer_reads_the_items_with_their_lines_and_topics(serve: Serve
         "topics": ["left/gripper/state"],
         "text": "left: {model: panda, gripper: {model: panda_hand}}",
         "line": 5,
+        "file": "",
     }

@@ -12,6 +12,8 @@ export const queryKeys = {
   cellConnection: ['cell connection'],
   cellItems: ['cell items'],
   cellDevices: ['cell devices'],
+  cellDocuments: ['cell documents'],
+  namingBehaviors: (name: string) => ['naming behaviors', name] as const,
   names: (text: string) => ['names', text] as const,
   catalogue: ['catalogue'],
   stateSource: (state: string) => [...queryKeys.catalogue, 'source', state] as const,

@@ -11,6 +11,7 @@ import type {
   EntryPage,
   EntryRecord,
   GoalEnd,
+  ItemHandleMoved,
   JogBlockFrame,
   JogReadiness,
   PrimitiveComparison,
@@ -56,6 +57,8 @@ export interface TeachStore {
   readonly dropped: PressDropped | undefined
   /** What the jogged arm stands before; undefined for nothing. */
   readonly block: JogBlockFrame | undefined
+  /** Where the handle of an item is dragged; undefined until that is told. */
+  readonly placed: ItemHandleMoved | undefined
   readonly refused: Readonly<Partial<Record<RefusedFrame['what'], RefusedFrame>>>
 }
 
@@ -73,6 +76,7 @@ const NOTHING: TeachStore = {
   readiness: {},
   dropped: undefined,
   block: undefined,
+  placed: undefined,
   refused: {},
 }
 
@@ -152,6 +156,7 @@ class Connection {
         readiness: {},
         dropped: undefined,
         block: undefined,
+        placed: undefined,
         isPreviewing: false,
       })
       this.retry = setTimeout(() => this.open(), RETRY_MS)
@@ -187,6 +192,9 @@ function take(message: TeachingFrame): void {
       break
     case 'dropped':
       useTeach.setState({ dropped: message })
+      break
+    case 'placed':
+      useTeach.setState({ placed: message })
       break
     case 'block':
       useTeach.setState({ block: message.first ? message : undefined })

@@ -38,6 +38,14 @@ export interface AdaptationRequest {
   readonly names?: Dict<string>
 }
 
+/** Add an item at the end of a section, which is written if the document has none. */
+export interface AddCellItem {
+  readonly edit: "add_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly value: Dict<unknown>
+}
+
 /** Insert a new node into a container; its name is generated if none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` returns them are the content instead. `after` connects the open success outcomes of a sibling (its path) to the new node; `on_edge` inserts it into a transition. `index` is its position among the children. */
 export interface AddNode {
   readonly edit: "add_node"
@@ -402,6 +410,42 @@ export interface CauseLine {
 export interface CellConnection {
   readonly connected: boolean
   readonly reason: string
+}
+
+/** A document of the cell on disk; `saved_at` is the time of its last change, seconds since 1970. */
+export interface CellDocumentBody {
+  readonly id: string
+  readonly saved_at: number
+  readonly draft: CellDraft
+}
+
+/** A document that can be edited: its id is its path in the project. `folder` is what a cell document beside the open one writes for a module; empty for the cell itself. */
+export interface CellDocumentName {
+  readonly id: string
+  readonly kind: "cell" | "module"
+  readonly folder: string
+}
+
+/** What a text says; one that cannot be read has findings and no items. `frames` are the poses in the world, or in the frame of the module, of all that something may stand in; none while the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item. */
+export interface CellDraft {
+  readonly text: string
+  readonly hash: string
+  readonly kind: "cell" | "module"
+  readonly items: readonly DraftItem[]
+  readonly findings: readonly FindingView[]
+  readonly frames: Dict<Pose>
+}
+
+/** A text after edits, with what it says; the text as it was if an edit was refused. */
+export interface CellEditAnswer {
+  readonly draft: CellDraft
+  readonly refused: EditRefusal | null
+}
+
+/** A text and the edits to apply, all or none. */
+export interface CellEditsBody {
+  readonly text: string
+  readonly edits: readonly (AddCellItem | RemoveCellItem | RenameCellItem | SetCellField)[]
 }
 
 /** The cell that a behavior is written for, and why it cannot be executed in the connected one. */
@@ -792,6 +836,15 @@ export interface DocumentsChanged {
 export interface DraftBody {
   readonly text: string
   readonly check?: boolean
+}
+
+/** An item of a document as written, with its first and last line, from 1. */
+export interface DraftItem {
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly line: number
+  readonly end_line: number
+  readonly value: Dict<unknown>
 }
 
 /** From the page, every 50 ms while the mouse is down on its 3D view. */
@@ -1268,6 +1321,14 @@ export interface InterruptedRun {
 /** The rates, from 0 to 1 (of a difference from -1), that the runs do not exclude. */
 export type Interval = readonly [number, number]
 
+/** To the page: where its handle is dragged in the world; at the phase `end` the mouse is up. */
+export interface ItemHandleMoved {
+  readonly k: "placed"
+  readonly phase: "end" | "start" | "update"
+  readonly xyz: readonly [number, number, number]
+  readonly xyzw: readonly [number, number, number, number]
+}
+
 /** What the arm that this page jogs stands before, and which directions lead out; no names for nothing. */
 export interface JogBlockFrame {
   readonly k: "block"
@@ -1489,6 +1550,13 @@ export interface MappedName {
   readonly reason: string
   readonly candidates: readonly NameCandidate[]
   readonly paths: readonly string[]
+}
+
+/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `pose` is that of its centre in the world. */
+export interface MarkedBody {
+  readonly shape: "box" | "cylinder" | "sphere"
+  readonly size_m: readonly number[]
+  readonly pose: readonly [readonly [number, number, number], readonly [number, number, number, number]]
 }
 
 /** The distribution of a measure over the runs that succeeded, and over those that did not. */
@@ -2146,7 +2214,7 @@ export interface RecordingFile {
 export interface RecoveryStepBody {
 }
 
-/** A behavior that references another one: its id and name, and the referencing nodes. */
+/** A behavior that references another one, or names an item of its cell: its id and name, and the nodes that do. */
 export interface ReferringBehavior {
   readonly id: string
   readonly name: string
@@ -2166,10 +2234,25 @@ export interface ReleaseStopBody {
   readonly stop?: number | null
 }
 
+/** Remove an item that nothing else in the document names. */
+export interface RemoveCellItem {
+  readonly edit: "remove_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+}
+
 /** Remove nodes, with the transitions and conditions that name them; other references become findings. */
 export interface RemoveNodes {
   readonly edit: "remove_nodes"
   readonly paths: readonly string[]
+}
+
+/** Rename an item, with all that names it in the document. */
+export interface RenameCellItem {
+  readonly edit: "rename_item"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly new_name: string
 }
 
 /** Rename a node; all references to it are updated. */
@@ -2470,6 +2553,15 @@ export interface SetCanvasNote {
   readonly note: CanvasNote | null
 }
 
+/** Set a field of an item; null removes it, so that its default applies. Of a list and of a mapping only what differs is written: the other values keep their spelling. */
+export interface SetCellField {
+  readonly edit: "set_field"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly name: string
+  readonly field: readonly string[]
+  readonly value: unknown
+}
+
 /** Change declarations of the document; null removes a key. Other keys are unchanged. Keys: name, description, cell, parameters, userdata, outcomes, success. */
 export interface SetDocument {
   readonly edit: "set_document"
@@ -2520,6 +2612,13 @@ export interface ShowHandle {
   readonly mode?: "move" | "push"
 }
 
+/** From the page: show a handle at a pose in the world, or none; it moves nothing, the page is told where it is. */
+export interface ShowItemHandle {
+  readonly k: "place"
+  readonly at?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
+  readonly turns?: boolean
+}
+
 /** From the client: the 3D view under `/cell/<page>/` shows exactly these groups. */
 export interface ShowLayers {
   readonly k: "show"
@@ -2533,6 +2632,7 @@ export interface ShowMarks {
   readonly points?: readonly (readonly [number, number, number])[]
   readonly box?: readonly [readonly [number, number, number], readonly [number, number, number]] | null
   readonly axes?: readonly [readonly [number, number, number], readonly [number, number, number, number]] | null
+  readonly body?: MarkedBody | null
 }
 
 /** From the client: what this page shows; the last one counts, and goes with the connection. */
@@ -3245,6 +3345,6 @@ export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | States
 
 export type GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
 
-export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame
+export type TeachingFrame = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | PressDropped | JogReadiness | JogBlockFrame | RefusedFrame | ItemHandleMoved
 
-export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks
+export type TeachingMessage = PrepareJogging | StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught | ShowMarks | ShowItemHandle

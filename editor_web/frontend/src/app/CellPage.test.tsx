@@ -40,6 +40,7 @@ const CELL: CellItems = {
 }
 
 function page(item: string, onOpen = vi.fn(), role = 'operator') {
+  if (role === 'operator') server().on('GET /cell_documents', [])
   return { onOpen, user: show(<CellPage item={item} session={session({ role, cell_view_port: 9 })} isNarrow={false} onOpen={onOpen} />) }
 }
 
@@ -162,6 +163,7 @@ it('says of a device with a driver whether it is real', async () => {
 })
 
 it('shows of a real tool in the tree that it may not move, and beside it how it is enabled', async () => {
+  server().on('GET /cell_documents', [])
   const known = session({ devices: [{ device: 'left/gripper', driver: 'robotiq', simulated: false }] })
   const details = { device: 'left/gripper', address: 'left/gripper', driver: 'robotiq', simulated: false, options: {}, schema: {} }
   const words = {

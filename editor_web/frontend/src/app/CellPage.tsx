@@ -1,28 +1,41 @@
-/** The page of the cell, for reading: what it consists of, where that is, and what it does now. */
-import { Box } from '@mantine/core'
+/** The page of the cell: what it consists of, where that is, what it does now; and the editor of its document. */
+import { Box, Button } from '@mantine/core'
+import { IconPencil } from '@tabler/icons-react'
+import { useQueryClient } from '@tanstack/react-query'
 import { useMemo, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { Refusal } from '../components/Refusal'
+import { cellDocumentsQuery } from '../api/cellDocuments'
 import { cellDevicesQuery, cellItemsQuery } from '../api/cellItems'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
 import { useAnswer } from '../api/queryClient'
+import { queryKeys } from '../api/queryKeys'
 import { hasCellView } from '../api/session'
-import type { CellStateFrame, SessionBody } from '../api/types'
+import type { CellDocumentName, CellStateFrame, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { Splitter } from '../components/Splitter'
+import { itemAt, itemsOfDraft, surroundingsOf } from '../document/cellEditing'
 import { cellTree, deviceOf, nodeAt } from '../document/cellTree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { DriverSwitch } from '../features/cell/DriverSwitch'
 import { ShowMenu } from '../features/cell/ShowMenu'
+import { AddMenu } from '../features/cellEditor/AddMenu'
+import { CellText } from '../features/cellEditor/CellText'
+import { EditorBar } from '../features/cellEditor/EditorBar'
+import { ItemForm } from '../features/cellEditor/ItemForm'
+import { openCellDocument } from '../features/cellEditor/session'
+import { draftOf, useCellEditor } from '../features/cellEditor/store'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { DevicePanel } from '../features/devices/DevicePanel'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
+
+const NO_DOCUMENTS: readonly CellDocumentName[] = []
 
 interface CellPageProps {
   /** The address of the selected item, empty for none. */
@@ -42,7 +55,17 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const robots = useLive((s) => s.robots)
   // The names of the frames and not their poses: the tree stays the same while an arm moves.
   const frames = Object.keys(state?.poses ?? {}).join('\n')
-  const tree = useMemo(() => cellTree(cell?.items ?? [], frames ? frames.split('\n') : []), [cell, frames])
+  const mayEdit = session?.role === 'operator'
+  const { value: documents = NO_DOCUMENTS } = useAnswer(cellDocumentsQuery(mayEdit))
+  const phase = useCellEditor((s) => s.phase)
+  const draft = useCellEditor((s) => (s.phase === 'ready' ? draftOf(s) : undefined))
+  const client = useQueryClient()
+  const tree = useMemo(() => {
+    const shown = frames && draft?.kind !== 'module' ? frames.split('\n') : []
+    return cellTree(draft ? itemsOfDraft(draft, cell?.items ?? []) : (cell?.items ?? []), shown)
+  }, [cell, frames, draft])
+  const folders = useMemo(() => documents.flatMap((each) => each.folder || []), [documents])
+  const surroundings = useMemo(() => draft && surroundingsOf(draft, folders), [draft, folders])
   // What is selected comes to the front, each time that something is.
   const asked = useMemo(() => (item ? { tab: 'Details' } : undefined), [item])
   if (problem) return <Empty title="The cell cannot be read">{problem}</Empty>
@@ -50,13 +73,26 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const now = { robots, state }
   const node = nodeAt(tree, item)
   const select = (address: string) => onOpen(cellHref(address))
+  const edited = draft && itemAt(draft, item)
+  const faulty = new Set(draft?.findings.map((each) => each.path))
   const items = (
-    <Panel title="Items">
-      <CellItemTree tree={tree} now={now} selected={item} onSelect={select} />
+    <Panel
+      title="Items"
+      tools={
+        surroundings && (
+          <AddMenu
+            surroundings={surroundings}
+            taken={cell.items.filter((each) => !each.owner).map((each) => each.name)}
+            onSelect={select}
+          />
+        )
+      }
+    >
+      <CellItemTree key={draft?.kind} tree={tree} now={now} selected={item} faulty={faulty} onSelect={select} />
     </Panel>
   )
   const driven = devices?.find((each) => `robots/${each.device}` === node?.item?.path)
-  const panel = node ? (
+  const read = node ? (
     <ItemDetails
       node={node}
       cell={cell}
@@ -74,6 +110,37 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
         <Empty title="Nothing is selected">Select an item of the tree.</Empty>
       )}
     </Panel>
+  )
+  const properties =
+    edited && surroundings ? (
+      <Panel title={`${edited.section}/${edited.name}`}>
+        <ItemForm
+          key={`${edited.section}/${edited.name} ${JSON.stringify(edited.value)}`}
+          item={edited}
+          surroundings={surroundings}
+          onSelect={select}
+        />
+      </Panel>
+    ) : (
+      read
+    )
+  const text = (
+    <Panel title="Document">
+      <CellText selected={item} onSelect={select} />
+    </Panel>
+  )
+  const panel = draft ? (
+    <Group orientation="vertical" style={{ height: '100%' }}>
+      <Pane id="cell-properties" defaultSize="58%" minSize="20%">
+        {properties}
+      </Pane>
+      <Splitter label="Height of the properties" />
+      <Pane id="cell-text" defaultSize="42%" minSize="12%">
+        {text}
+      </Pane>
+    </Group>
+  ) : (
+    read
   )
   const view = (
     <Panel
@@ -93,8 +160,26 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   return (
     <>
       <PageHead title={cell.cell} words={cell.description}>
+        {phase === 'closed' && mayEdit && documents[0] && (
+          <Button
+            size="xs"
+            variant="default"
+            leftSection={<IconPencil size={14} aria-hidden />}
+            onClick={() => documents[0] && void openCellDocument(documents[0].id)}
+          >
+            Edit the cell
+          </Button>
+        )}
         <DriverSwitch session={session} />
       </PageHead>
+      {phase !== 'closed' && (
+        <EditorBar
+          documents={documents}
+          session={session}
+          isChanged={cell.changed}
+          onSaved={() => void client.invalidateQueries({ queryKey: queryKeys.cellItems })}
+        />
+      )}
       {session?.opening_problem && (
         <Refusal isWide title="The cell was not opened as it was asked for.">
           It is open as it was before. {session.opening_problem}

@@ -1,6 +1,7 @@
 /** The tree of the cell, with the state of each item beside it. */
 import { getTreeExpandedState, Group, ScrollArea, Text, Tree, useTree, type RenderTreeNodePayload, type TreeNodeData } from '@mantine/core'
 import {
+  IconAlertTriangle,
   IconBox,
   IconCamera,
   IconChevronRight,
@@ -42,10 +43,12 @@ interface CellItemTreeProps {
   readonly now: CellNow
   /** The address of the selected item, empty for none. */
   readonly selected: string
+  /** The paths of items in which the document under edit has errors. */
+  readonly faulty: ReadonlySet<string>
   readonly onSelect: (address: string) => void
 }
 
-export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProps) {
+export function CellItemTree({ tree, now, selected, faulty, onSelect }: CellItemTreeProps) {
   const data = useMemo(() => tree.map(dataOf), [tree])
   // Groups of items are open at first; the many frames of arms are not.
   const controller = useTree({
@@ -84,7 +87,7 @@ export function CellItemTree({ tree, now, selected, onSelect }: CellItemTreeProp
         expandOnClick={false}
         levelOffset="md"
         allowRangeSelection={false}
-        renderNode={(payload) => <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} />}
+        renderNode={(payload) => <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} faulty={faulty} />}
       />
     </ScrollArea>
   )
@@ -105,12 +108,13 @@ function dataOf(node: CellNode): TreeNodeData {
 function Line({
   cell,
   now,
+  faulty,
   expanded,
   hasChildren,
   selected,
   elementProps,
   tree,
-}: RenderTreeNodePayload & { readonly cell: CellNode | undefined; readonly now: CellNow }) {
+}: RenderTreeNodePayload & { readonly cell: CellNode | undefined; readonly now: CellNow; readonly faulty: ReadonlySet<string> }) {
   if (!cell) return null
   const Kind = ICONS[cell.kind] ?? IconCube3dSphere
   const state = stateWords(cell, now)
@@ -140,6 +144,11 @@ function Line({
       {cell.detail && (
         <Text span size="xs" c="dimmed" truncate>
           {cell.detail}
+        </Text>
+      )}
+      {cell.item && faulty.has(cell.item.path) && (
+        <Text span size="xs" c="var(--failed)" style={{ whiteSpace: 'nowrap' }}>
+          <IconAlertTriangle size={13} aria-hidden /> has an error
         </Text>
       )}
       {cell.kind === 'group' && (

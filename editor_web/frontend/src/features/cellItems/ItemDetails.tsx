@@ -194,7 +194,7 @@ function Lines({ item, cell }: { readonly item: CellItem; readonly cell: CellIte
         </Title>
         {cell.changed && (
           <Alert color="yellow" p="xs">
-            The document has changed since the cell was opened. The open cell is as it was; restart the server to open the cell anew.
+            The document has changed since the cell was opened. The open cell is as it was; edit the cell to connect it anew.
           </Alert>
         )}
         {item.line > 0 ? (

@@ -5,7 +5,7 @@ import { Decoration, EditorView, keymap, lineNumbers } from '@codemirror/view'
 import { Box } from '@mantine/core'
 import { useEffect, useRef } from 'react'
 import type { StateSource } from '../../api/types'
-import { TEXT_FRAME } from './textFrame'
+import { TEXT_FRAME } from '../../components/textFrame'
 
 export function SourceText({ source }: { readonly source: StateSource }) {
   const parent = useRef<HTMLDivElement>(null)

@@ -1,65 +1,19 @@
 /** The document as text, in step with the canvas: typing changes the graph, edits on the canvas change the text in place. */
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete'
-import { defaultKeymap, indentWithTab } from '@codemirror/commands'
-import { yaml } from '@codemirror/lang-yaml'
-import { bracketMatching, foldGutter, HighlightStyle, indentOnInput, indentUnit, syntaxHighlighting } from '@codemirror/language'
-import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
-import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search'
-import { Annotation, EditorState, StateEffect, StateField } from '@codemirror/state'
-import {
-  Decoration,
-  drawSelection,
-  EditorView,
-  highlightActiveLine,
-  highlightActiveLineGutter,
-  keymap,
-  lineNumbers,
-  type DecorationSet,
-} from '@codemirror/view'
-import { tags } from '@lezer/highlight'
+import { autocompletion } from '@codemirror/autocomplete'
+import { setDiagnostics, type Diagnostic } from '@codemirror/lint'
+import { EditorState } from '@codemirror/state'
+import { EditorView } from '@codemirror/view'
 import { Box } from '@mantine/core'
 import { useEffect, useRef } from 'react'
 import type { FindingView, FixesBody } from '../../api/types'
-import { isError, problemsOf } from '../../document/editing/findings'
-import { changeBetween } from '../../document/editing/textChange'
+import { diagnosticOf, FromPage, showLines, showText, yamlText } from '../../components/yamlText'
+import { problemsOf } from '../../document/editing/findings'
 import { nodeAtLine } from '../../document/editing/textPositions'
 import { typed } from './apply'
 import { fixesOf, makeFix, useFreshFixes } from './fixes'
 import { completeText } from './textCompletion'
-import { TEXT_FRAME } from './textFrame'
 import { choose } from './actions'
 import { chosenOf, draftOf, editor, rootOf, setEditor, useEditor } from './store'
-
-/** A change that comes from the canvas, not from the keyboard. */
-const FromCanvas = Annotation.define<boolean>()
-
-const markNode = StateEffect.define<{ from: number; to: number } | undefined>()
-
-/** The lines of the selected node. */
-const nodeLines = StateField.define<DecorationSet>({
-  create: () => Decoration.none,
-  update(lines, transaction) {
-    const next = lines.map(transaction.changes)
-    const effect = transaction.effects.find((each) => each.is(markNode))
-    if (!effect) return next
-    if (!effect.value) return Decoration.none
-    const { doc } = transaction.state
-    const { from, to } = effect.value
-    const marks = []
-    for (let line = from; line <= Math.min(to, doc.lines); line += 1)
-      marks.push(Decoration.line({ class: 'cm-node-line' }).range(doc.line(line).from))
-    return Decoration.set(marks)
-  },
-  provide: (field) => EditorView.decorations.from(field),
-})
-
-const LOOK = HighlightStyle.define([
-  { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: 'var(--accent)' },
-  { tag: [tags.string, tags.content], color: 'var(--done)' },
-  { tag: [tags.number, tags.bool, tags.null], color: 'var(--stopped)' },
-  { tag: tags.comment, color: 'var(--quiet)' },
-  { tag: [tags.punctuation, tags.separator, tags.brace, tags.squareBracket], color: 'var(--quiet)' },
-])
 
 function newView(parent: HTMLElement): EditorView {
   return new EditorView({
@@ -67,34 +21,10 @@ function newView(parent: HTMLElement): EditorView {
     state: EditorState.create({
       doc: draftOf(editor()).text,
       extensions: [
-        lineNumbers(),
-        foldGutter(),
-        lintGutter(),
-        highlightActiveLine(),
-        highlightActiveLineGutter(),
-        drawSelection(),
-        indentOnInput(),
-        indentUnit.of('  '),
-        bracketMatching(),
-        closeBrackets(),
-        highlightSelectionMatches(),
-        search({ top: true }),
-        nodeLines,
-        TEXT_FRAME,
-        yaml(),
-        syntaxHighlighting(LOOK),
+        yamlText('Text of the behavior'),
         autocompletion({ override: [completeText], activateOnTyping: true }),
-        // No history of its own: undo is that of the document.
-        keymap.of([
-          ...closeBracketsKeymap,
-          ...completionKeymap,
-          ...searchKeymap.filter((binding) => binding.key !== 'Mod-d'),
-          ...defaultKeymap,
-          indentWithTab,
-        ]),
-        EditorView.contentAttributes.of({ 'aria-label': 'Text of the behavior', tabindex: '0' }),
         EditorView.updateListener.of((update) => {
-          const isOwn = !update.transactions.some((each) => each.annotation(FromCanvas))
+          const isOwn = !update.transactions.some((each) => each.annotation(FromPage))
           if (update.docChanged && isOwn) typed(update.state.doc.toString())
           else if (update.selectionSet && isOwn && update.view.hasFocus) follow(update.state)
         }),
@@ -116,24 +46,14 @@ function follow(state: EditorState): void {
 }
 
 function diagnosticsOf(view: EditorView, findings: readonly FindingView[], fixes: readonly FixesBody[]): Diagnostic[] {
-  const { doc } = view.state
   return findings
-    .map((finding) => {
-      const line = doc.line(Math.max(1, Math.min(doc.lines, finding.line)))
-      const from = Math.min(line.to, line.from + Math.max(0, finding.column - 1))
-      const word = /^[^\s,:}\]]+/.exec(doc.sliceString(from, line.to))?.[0].length ?? 1
-      return {
-        from,
-        to: Math.min(line.to, from + Math.max(1, word)),
-        severity: isError(finding) ? ('error' as const) : ('warning' as const),
-        message: [finding.message, finding.hint].filter(Boolean).join('\n'),
-        source: finding.code,
-        actions: fixesOf(fixes, finding).map((fix) => ({
-          name: fix.title.replaceAll('`', ''),
-          apply: () => makeFix(fix),
-        })),
-      }
-    })
+    .map((finding) => ({
+      ...diagnosticOf(view, finding),
+      actions: fixesOf(fixes, finding).map((fix) => ({
+        name: fix.title.replaceAll('`', ''),
+        apply: () => makeFix(fix),
+      })),
+    }))
     .toSorted((a, b) => a.from - b.from)
 }
 
@@ -154,8 +74,7 @@ export function YamlPane() {
   }, [])
 
   useEffect(() => {
-    const change = view.current && changeBetween(view.current.state.doc.toString(), text)
-    if (change) view.current?.dispatch({ changes: change, annotations: FromCanvas.of(true) })
+    if (view.current) showText(view.current, text)
   }, [text])
 
   useEffect(() => {
@@ -166,12 +85,8 @@ export function YamlPane() {
   useEffect(() => {
     const now = view.current
     if (!now) return
-    const lines =
-      chosen && chosen.line <= now.state.doc.lines ? { from: chosen.line, to: Math.max(chosen.line, chosen.end_line) } : undefined
-    const at = lines && now.state.doc.line(lines.from).from
-    const effects: StateEffect<unknown>[] = [markNode.of(lines)]
-    if (at !== undefined && !now.hasFocus) effects.push(EditorView.scrollIntoView(at, { y: 'start', yMargin: 60 }))
-    now.dispatch({ effects })
+    const isThere = chosen && chosen.line <= now.state.doc.lines
+    showLines(now, isThere ? { from: chosen.line, to: Math.max(chosen.line, chosen.end_line) } : undefined)
     // oxlint-disable-next-line react/exhaustive-deps -- a node that was drawn anew, with the same lines, scrolls nothing
   }, [chosen?.line, chosen?.end_line, chosen?.path, text])
 
@@ -183,7 +98,7 @@ export function YamlPane() {
     now.dispatch({
       selection: { anchor: at },
       effects: EditorView.scrollIntoView(at, { y: 'center' }),
-      annotations: FromCanvas.of(true),
+      annotations: FromPage.of(true),
     })
   }, [place])
 

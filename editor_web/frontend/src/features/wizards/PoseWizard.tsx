@@ -29,7 +29,7 @@ import { degrees, rollPitchYaw } from '../../document/teaching'
 import { TaughtArm, useArm, useArmObstacle, useTool } from './TaughtArm'
 import { TaughtPoint } from './TaughtPoint'
 import { useShownValue } from './useShownValue'
-import { VectorFields } from './VectorFields'
+import { VectorFields } from '../../components/VectorFields'
 import { WizardFrame } from './WizardFrame'
 
 const TURN_DIGITS = 5

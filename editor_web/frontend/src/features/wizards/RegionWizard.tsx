@@ -7,7 +7,7 @@ import type { PlainWizardProps } from './JointWizard'
 import { TaughtArm, useArm } from './TaughtArm'
 import { TaughtPoint } from './TaughtPoint'
 import { useShownValue } from './useShownValue'
-import { VectorFields } from './VectorFields'
+import { VectorFields } from '../../components/VectorFields'
 import { WizardFrame } from './WizardFrame'
 
 const SMALLEST_M = 0.001

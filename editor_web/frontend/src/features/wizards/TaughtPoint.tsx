@@ -4,7 +4,7 @@ import { IconFocusCentered } from '@tabler/icons-react'
 import { CommandButton } from '../../components/CommandButton'
 import { roundedTo, type Vector } from '../../document/poses'
 import { useArmObstacle, useTool } from './TaughtArm'
-import { VectorFields } from './VectorFields'
+import { VectorFields } from '../../components/VectorFields'
 
 export interface TaughtPointProps {
   readonly label: string

@@ -1,0 +1,153 @@
+/** The properties of one item: what is changed here is seen in 3D at once, and in the document when it is applied. */
+import { Button, Group, NativeSelect, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
+import { IconTrash } from '@tabler/icons-react'
+import { useState } from 'react'
+import { CommandButton } from '../../components/CommandButton'
+import { Refusal } from '../../components/Refusal'
+import { namingBehaviorsQuery } from '../../api/cellDocuments'
+import { useAnswer } from '../../api/queryClient'
+import type { DraftItem } from '../../api/types'
+import {
+  editsBetween,
+  fieldsFor,
+  itemAddress,
+  keyOf,
+  nameFault,
+  shownItem,
+  valueAt,
+  withShape,
+  withValue,
+  type Surroundings,
+} from '../../document/cellEditing'
+import { canDrag, canTurn, DRAG_STEPS, draggedTo, type DragSteps } from '../../document/cellPlacing'
+import { FieldInput, fieldFault } from './FieldInput'
+import { edit } from './session'
+import { cellEditor, draftOf, setCellEditor, useCellEditor } from './store'
+import { useItemHandle } from './useItemHandle'
+import { useShownItem } from './useShownItem'
+
+interface ItemFormProps {
+  readonly item: DraftItem
+  readonly surroundings: Surroundings
+  readonly onSelect: (address: string) => void
+}
+
+export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
+  const { section, name, value } = item
+  const [next, setNext] = useState(value)
+  const [newName, setNewName] = useState(name)
+  const frames = useCellEditor((s) => draftOf(s).frames)
+  const kind = useCellEditor((s) => draftOf(s).kind)
+  const findings = useCellEditor((s) => draftOf(s).findings)
+  const { value: naming } = useAnswer(namingBehaviorsQuery(kind === 'cell' && newName !== name ? name : ''))
+  const path = `${section}/${name}`
+  const fields = fieldsFor(section, next, {
+    ...surroundings,
+    // Nothing stands in itself; the connector that a module has is not free for others.
+    frames: surroundings.frames.filter((each) => each !== name && !each.startsWith(`${name}/`)),
+  })
+  const edits = editsBetween(item, next, newName, fields)
+  const fault = nameFault(newName) ?? fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
+  const steps = useCellEditor((s) => s.steps)
+  const shown = kind === 'cell' ? shownItem(section, next, frames) : undefined
+  useShownItem(shown)
+  useItemHandle(canDrag(section) && steps !== 'off' ? shown?.pose : undefined, canTurn(section), (pose) => {
+    if (steps !== 'off') setNext((now) => draggedTo({ section, name, value: now }, pose, draftOf(cellEditor()), steps))
+  })
+
+  async function apply(): Promise<void> {
+    if (edits.length === 0 || fault !== undefined) return
+    const isMade = await edit(newName === name ? `Change ${name}` : `Rename ${name}`, edits)
+    if (isMade && newName !== name) onSelect(itemAddress({ section, name: newName }))
+  }
+
+  async function remove(): Promise<void> {
+    if (await edit(`Delete ${name}`, [{ edit: 'remove_item', section, name }])) onSelect('')
+  }
+
+  return (
+    <Stack
+      component="form"
+      h="100%"
+      gap={0}
+      aria-label={`Change ${name}`}
+      onSubmit={(event) => {
+        event.preventDefault()
+        void apply()
+      }}
+    >
+      <ScrollArea flex={1} viewportProps={{ tabIndex: 0, role: 'region', 'aria-label': `Properties of ${name}` }}>
+        <Stack gap="xs" p="sm">
+          {findings
+            .filter((each) => each.path === path)
+            .map((each) => (
+              <Refusal key={`${each.line} ${each.message}`} hint={each.hint}>
+                {each.message}
+              </Refusal>
+            ))}
+          <TextInput
+            size="xs"
+            label="Name"
+            value={newName}
+            error={nameFault(newName)}
+            onChange={(event) => setNewName(event.currentTarget.value)}
+          />
+          {newName !== name && (
+            <Text size="xs" c="dimmed" role="status">
+              All that names it in this document follows. Taught entries do not, and{' '}
+              {naming === undefined
+                ? 'behaviors neither.'
+                : naming.length === 0
+                  ? 'no saved behavior names it.'
+                  : `neither do these behaviors: ${naming.map((each) => `${each.name} (${each.paths.length})`).join(', ')}.`}
+            </Text>
+          )}
+          {fields.map((field) => (
+            <FieldInput
+              key={keyOf(field.path)}
+              field={field}
+              value={valueAt(next, field.path)}
+              onChange={(made) =>
+                setNext(
+                  keyOf(field.path) === 'shape' && typeof made === 'string' ? withShape(next, made) : withValue(next, field.path, made),
+                )
+              }
+            />
+          ))}
+          {fault !== undefined && (
+            <Text size="xs" c="var(--failed)" role="status">
+              {fault}
+            </Text>
+          )}
+          {kind === 'cell' && canDrag(section) && (
+            <NativeSelect
+              size="xs"
+              label="Drag in the 3D view"
+              description="By the arrows and rings, in these steps, or onto a connector"
+              value={steps}
+              data={[{ value: 'off', label: 'off' }, ...Object.entries(DRAG_STEPS).map(([key, { label }]) => ({ value: key, label }))]}
+              onChange={(event) => setCellEditor({ steps: event.currentTarget.value as DragSteps })}
+            />
+          )}
+        </Stack>
+      </ScrollArea>
+      <Group gap="xs" px="sm" py="xs" flex="none">
+        <Button type="submit" size="xs" disabled={edits.length === 0 || fault !== undefined} title={fault ?? ''}>
+          Apply
+        </Button>
+        <Button
+          size="xs"
+          variant="default"
+          disabled={edits.length === 0}
+          onClick={() => {
+            setNext(value)
+            setNewName(name)
+          }}
+        >
+          Reset
+        </Button>
+        <CommandButton label="Delete" of={name} tone="danger" icon={<IconTrash size={14} aria-hidden />} onPress={() => void remove()} />
+      </Group>
+    </Stack>
+  )
+}
