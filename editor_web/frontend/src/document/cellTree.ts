@@ -168,7 +168,7 @@ export function stateWords(node: CellNode, now: CellNow): { readonly words: stri
     case 'module': {
       const connector = now.state && lookup(now.state.modules, name)
       if (connector === undefined) return undefined
-      return connector ? { words: `at ${connector}`, look: 'idle' } : { words: 'not plugged', look: 'skipped' }
+      return { words: connector ? `at ${connector}` : 'not plugged', look: 'idle' }
     }
     default: {
       const pose = poseOf(node, now.state)
