@@ -25,8 +25,8 @@ from engine.document.text.yaml_writer import write_yaml
 from engine.errors import DocumentError, Position
 
 # PyYAML has no types of its own for these two.
-_compose: Any = yaml.compose  # pyright: ignore[reportUnknownMemberType]
-_scalar: Any = yaml.SafeLoader("").construct_object  # pyright: ignore[reportUnknownMemberType]
+_compose = cast("Any", yaml).compose
+_scalar = cast("Any", yaml.SafeLoader("")).construct_object
 _PYTHON = re.compile(r"^(?:[^#\n'\"]*[\s:\-\[{,])?!!?(?:<tag:yaml\.org,2002:)?python/", re.MULTILINE)
 _PWM = "the pulses of a ReconCycle PWM (an angle over its `signal_to_angle`) are not offered"
 _PWM_HINT = "set `actual_config: empty`, or write a document of flexcell with `kind: pwm`, which sets a duty"

@@ -18,7 +18,10 @@ from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading,
 from robots.io.wire.link_error import LinkError
 
 _PULLS = {"none": "floating", "up": "up", "down": "down"}
-_CONNECT_S = 0.5
+_CONNECT_S = 0.3
+_HARDWARE = 17
+_REQUEST = struct.Struct("<IIII")
+_REPLY = struct.Struct("<IIIi")
 
 
 class GpiozeroTransport:
@@ -29,6 +32,8 @@ class GpiozeroTransport:
         self._backend = backend
         self._factory: Any = None
         self._pins: dict[str, Any] = {}
+        self._revision = 0
+        """What pigpiod answers to a question with a known answer: pigpio does not check what answers belong to."""
 
     @property
     def address(self) -> str:
@@ -61,7 +66,10 @@ class GpiozeroTransport:
     def read(self) -> PinReading:
         """Read all pins."""
         try:
-            return PinReading(values={name: self._value(name, pin) for name, pin in self._opened().items()})
+            values = {name: self._value(name, pin) for name, pin in self._opened().items()}
+            if self._revision and self._factory.connection.get_hardware_revision() != self._revision:
+                raise LinkError("what answers is not pigpiod any more")
+            return PinReading(values=values)
         except _FAILURES as error:
             raise LinkError(f"no valid answer: {_words(error)}") from error
 
@@ -113,12 +121,22 @@ class GpiozeroTransport:
             return LGPIOFactory()
         from gpiozero.pins.pigpio import PiGPIOFactory
 
-        # pigpio writes to the console where nobody listens.
-        socket.create_connection((backend.host, backend.port), _CONNECT_S).close()
+        self._revision = _probe(backend.host, backend.port)
         factory: Any = PiGPIOFactory(host=backend.host, port=backend.port)
         # It would wait for an answer without end.
         factory.connection.sl.s.settimeout(backend.timeout_s)
         return factory
+
+
+def _probe(host: str, port: int) -> int:
+    """Return the hardware revision that pigpiod tells: pigpio itself waits without end for one that is silent, and prints its failures."""
+    with socket.create_connection((host, port), _CONNECT_S) as line:
+        line.settimeout(_CONNECT_S)
+        line.sendall(_REQUEST.pack(_HARDWARE, 0, 0, 0))
+        command, _, _, result = _REPLY.unpack(line.recv(_REPLY.size))
+        if command != _HARDWARE or result <= 0:
+            raise OSError("what answers is no pigpiod")
+        return result
 
 
 def _disconnect(factory: Any) -> None:
