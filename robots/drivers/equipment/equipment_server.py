@@ -118,8 +118,6 @@ class EquipmentServer:
     async def _answer(self, session: EquipmentSession, request: EquipmentRequest) -> EquipmentAnswer:
         try:
             return await self._execute(session, request)
-        except TimeoutError:
-            return Refused(reason="the pins did not answer in time; outputs may be set or not")
         except FlexcellError as error:
             where = f"{error.where}: " if isinstance(error, DocumentError) and error.where else ""
             return Refused(reason=f"{where}{error.message}", hint=error.hint or "")

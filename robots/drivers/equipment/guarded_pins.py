@@ -101,12 +101,11 @@ class GuardedPins:
     async def _set(self, values: PinValues) -> None:
         self._commands += 1
         command = self._commands
-        acknowledged_s = await self._link.submit(PinCommand(values=values))
-        async with asyncio.timeout(_CONFIRM_S):
-            while (latest := self._link.latest) is None or latest.asked_s < acknowledged_s:
-                self._link.fresh()
-                self._read.clear()
-                await self._read.wait()
+        try:
+            latest = await asyncio.wait_for(self._confirmed(values), _CONFIRM_S)
+        except TimeoutError as error:
+            reason = "the pins did not answer in time; outputs may be set or not"
+            raise RobotError(reason, where=self._link.transport.address, hint=self._link.transport.remedy) from error
         wrong = differing(values, latest.value.values)
         if command != self._commands:
             raise RobotError("another command came before this one was read back", where=self._link.transport.address)
@@ -114,6 +113,15 @@ class GuardedPins:
             words = ", ".join(f"`{name}` is {latest.value.values[name]}" for name in wrong)
             hint = "check the wiring of these outputs, and whether another program sets them"
             raise RobotError(f"outputs are read back with other values: {words}", hint=hint)
+
+    async def _confirmed(self, values: PinValues) -> FreshReading[PinReading]:
+        """Set outputs and return the first reading that was requested afterwards."""
+        acknowledged_s = await self._link.submit(PinCommand(values=values))
+        while (latest := self._link.latest) is None or latest.asked_s < acknowledged_s:
+            self._link.fresh()
+            self._read.clear()
+            await self._read.wait()
+        return latest
 
     def _checked(self, name: str, value: PinValue) -> PinValue:
         pin = self.document.pins.get(name)

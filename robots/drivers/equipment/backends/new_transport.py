@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 from engine.document.equipment.equipment_document import EquipmentDocument, GpiozeroPins, ModbusPins, SimulatedPins
 from engine.errors import RobotError
 from robots.drivers.device_transport import DeviceTransport
@@ -18,6 +20,9 @@ def new_pin_transport(document: EquipmentDocument) -> PinTransport:
             case SimulatedPins():
                 return SimulatedTransport(document)
             case GpiozeroPins() as backend:
+                import_module("gpiozero")
+                if backend.factory != "mock":
+                    import_module(backend.factory)
                 from robots.drivers.equipment.backends.gpiozero_transport import GpiozeroTransport
 
                 return GpiozeroTransport(document, backend)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -70,7 +71,5 @@ def test_pulses_are_refused() -> None:
 @given(content=st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda text: (HEAD + text).encode())))
 def test_any_bytes_are_a_document_or_an_error_of_one(content: bytes) -> None:
     """Nothing else is raised."""
-    try:
+    with suppress(DocumentError):
         read_equipment(content, file=FILE)
-    except DocumentError as error:
-        assert error.where is not None
