@@ -22,7 +22,7 @@ from robots.drivers.equipment.wire.equipment_messages import (
     ReadConfiguration,
     ReadPins,
     ReadTemplate,
-    Refused,
+    EquipmentRefusal,
     Restart,
     RollBack,
     SetConfiguration,
@@ -120,7 +120,7 @@ class EquipmentServer:
             return await self._execute(session, request)
         except FlexcellError as error:
             where = f"{error.where}: " if isinstance(error, DocumentError) and error.where else ""
-            return Refused(reason=f"{where}{error.message}", hint=error.hint or "")
+            return EquipmentRefusal(reason=f"{where}{error.message}", hint=error.hint or "")
 
     async def _execute(self, session: EquipmentSession, request: EquipmentRequest) -> EquipmentAnswer:
         match request:

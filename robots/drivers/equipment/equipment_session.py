@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 import msgspec
 
 from engine.errors import RobotError
-from robots.drivers.equipment.wire.equipment_messages import EquipmentAnswer, EquipmentRequest, Refused
+from robots.drivers.equipment.wire.equipment_messages import EquipmentAnswer, EquipmentRequest, EquipmentRefusal
 from robots.io.framing import FrameReader, frame_payload
 from robots.io.message_codec import encode_payload, payload_decoder
 
@@ -48,7 +48,7 @@ class EquipmentSession:
         except (ConnectionError, asyncio.CancelledError):
             pass  # the client is gone, or the server ends
         except (RobotError, msgspec.MsgspecError) as error:
-            self._send(0, Refused(reason=f"this is no message to an equipment server: {error}"))
+            self._send(0, EquipmentRefusal(reason=f"this is no message to an equipment server: {error}"))
         finally:
             self._writer.close()
             self.ended.set()

@@ -111,7 +111,7 @@ class GuardedPins:
             raise RobotError("another command came before this one was read back", where=self._link.transport.address)
         if wrong:
             words = ", ".join(f"`{name}` is {latest.value.values[name]}" for name in wrong)
-            hint = "check the wiring of these outputs, and whether another program sets them"
+            hint = "check what is connected to these outputs, and whether another program sets them"
             raise RobotError(f"outputs are read back with other values: {words}", hint=hint)
 
     async def _confirmed(self, values: PinValues) -> FreshReading[PinReading]:

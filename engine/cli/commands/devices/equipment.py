@@ -23,33 +23,14 @@ from engine.registry import SERVERS, load_factory
 ServeEquipment = Callable[..., Awaitable[None]]
 
 
-class ReadText(Protocol):
-    """A configuration as a server has it."""
-
-    @property
-    def text(self) -> str:
-        """The document as written."""
-        ...
-
-    @property
-    def digest(self) -> str:
-        """What tells it from others."""
-        ...
-
-    @property
-    def kept(self) -> tuple[str, ...]:
-        """When earlier ones were replaced (UTC)."""
-        ...
-
-
 class ConfigurationClient(Protocol):
     """The part of a client of the equipment server that these commands use."""
 
-    def configuration(self) -> ReadText:
+    def configuration(self) -> Any:
         """Return the one in effect."""
         ...
 
-    def template(self) -> ReadText:
+    def template(self) -> Any:
         """Return a commented example."""
         ...
 

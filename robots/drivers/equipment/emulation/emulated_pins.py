@@ -43,7 +43,7 @@ class EmulatedPins:
         self._handles = 0
 
     def set_level(self, number: int, level: int) -> None:
-        """Set the level of a pin, as a client or the wiring does."""
+        """Set the level of a pin, as a client does, or what is connected to it."""
         pin = self.pins[number]
         if pin.level != level or pin.duty is not None:
             pin.level, pin.duty, pin.changed_s = level, None, self._now_s()

@@ -21,7 +21,7 @@ from robots.drivers.equipment.wire.equipment_messages import (
     ReadConfiguration,
     ReadPins,
     ReadTemplate,
-    Refused,
+    EquipmentRefusal,
     Restart,
     RollBack,
     SetConfiguration,
@@ -95,7 +95,7 @@ class EquipmentClient:
             raise LinkError("the equipment server has closed the connection") from error
         except (msgspec.MsgspecError, RobotError) as error:
             raise LinkError(f"what answers is no equipment server: {error}") from error
-        if isinstance(answer, Refused):
+        if isinstance(answer, EquipmentRefusal):
             raise RobotError(answer.reason, where=self._address, hint=answer.hint or None)
         if answered != number or not isinstance(answer, kind):
             raise LinkError(f"the equipment server answered request {number} with {type(answer).__name__} {answered}")

@@ -89,11 +89,11 @@ class Done(EquipmentMessage, frozen=True, kw_only=True):
     message: str = ""
 
 
-class Refused(EquipmentMessage, frozen=True, kw_only=True):
+class EquipmentRefusal(EquipmentMessage, frozen=True, kw_only=True):
     """The request was not executed; says why and what to do."""
 
     reason: str
     hint: str = ""
 
 
-EquipmentAnswer = PinsState | ConfigurationText | Done | Refused
+EquipmentAnswer = PinsState | ConfigurationText | Done | EquipmentRefusal
