@@ -8,7 +8,7 @@ import re
 from datetime import UTC, datetime
 from pathlib import Path
 
-from engine.document.equipment.equipment_file import Equipment, read_equipment
+from engine.document.equipment import Equipment, read_equipment
 from engine.errors import RobotError
 
 _KEPT = re.compile(r"(\d{8}T\d{6}\.\d{6}Z)\.yaml")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.document.equipment.equipment_document import GpiozeroPins, ModbusPins, PinBackend
+from engine.document.equipment import GpiozeroPins, ModbusPins, PinBackend
 
 _HEAD = """\
 # An equipment document: check it with `flexcell check FILE`.

@@ -6,7 +6,7 @@ import asyncio
 import time
 from typing import Self
 
-from engine.document.equipment.equipment_file import Equipment, read_equipment
+from engine.document.equipment import Equipment, read_equipment
 from engine.errors import DocumentError, FlexcellError, RobotError
 from robots.drivers.equipment.configuration_file import ConfigurationFile, text_digest
 from robots.drivers.equipment.configuration_template import configuration_template
@@ -16,13 +16,13 @@ from robots.drivers.equipment.wire.equipment_messages import (
     ConfigurationText,
     Done,
     EquipmentAnswer,
+    EquipmentRefusal,
     EquipmentRequest,
     Greet,
     PinsState,
     ReadConfiguration,
     ReadPins,
     ReadTemplate,
-    EquipmentRefusal,
     Restart,
     RollBack,
     SetConfiguration,

@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 import msgspec
 
 from engine.errors import RobotError
-from robots.drivers.equipment.wire.equipment_messages import EquipmentAnswer, EquipmentRequest, EquipmentRefusal
+from robots.drivers.equipment.wire.equipment_messages import EquipmentAnswer, EquipmentRefusal, EquipmentRequest
 from robots.io.framing import FrameReader, frame_payload
 from robots.io.message_codec import encode_payload, payload_decoder
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from engine.document.equipment.equipment_document import DigitalInputPin, DigitalOutputPin, EquipmentDocument, PwmPin
+from engine.document.equipment import DigitalInputPin, DigitalOutputPin, EquipmentDocument, PwmPin
 from engine.errors import RobotError
-from engine.wording.suggestions import did_you_mean
+from engine.wording import did_you_mean
 from robots.drivers.equipment.backends.new_transport import new_pin_transport
 from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading, PinValue, PinValues, differing
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming

@@ -11,7 +11,7 @@ import struct
 from contextlib import suppress
 from typing import Any
 
-from engine.document.equipment.equipment_document import DigitalInputPin, EquipmentDocument, GpiozeroPins, Pin, PwmPin
+from engine.document.equipment import DigitalInputPin, EquipmentDocument, GpiozeroPins, Pin, PwmPin
 from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading, PinValue
 from robots.io.wire.link_error import LinkError
 

@@ -8,7 +8,7 @@ from typing import Any
 from pymodbus import ModbusException
 from pymodbus.client import ModbusTcpClient
 
-from engine.document.equipment.equipment_document import DigitalInputPin, EquipmentDocument, ModbusPins
+from engine.document.equipment import DigitalInputPin, EquipmentDocument, ModbusPins
 from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading, PinValue
 from robots.io.wire.link_error import LinkError
 

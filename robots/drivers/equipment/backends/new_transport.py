@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from engine.document.equipment.equipment_document import EquipmentDocument, GpiozeroPins, ModbusPins, SimulatedPins
+from engine.document.equipment import EquipmentDocument, GpiozeroPins, ModbusPins, SimulatedPins
 from engine.errors import RobotError
 from robots.drivers.device_transport import DeviceTransport
 from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.document.equipment.equipment_document import DigitalInputPin, EquipmentDocument
+from engine.document.equipment import DigitalInputPin, EquipmentDocument
 from robots.drivers.equipment.backends.pin_values import PinCommand, PinReading, PinValue
 
 

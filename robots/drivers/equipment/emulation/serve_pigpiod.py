@@ -17,7 +17,7 @@ from robots.drivers.equipment.emulation.pigpiod_emulator import PigpiodOptions
 async def serve_pigpiod(options: PigpiodOptions, ready: Ready) -> None:
     """Serve until this is cancelled; `ready` receives where.
 
-    The side channel: faults of the wire as `execute_wire_fault`; level: sets `pin` to `on`, as what is connected to it does; state: the
+    The side channel: faults of the wire as `execute_wire_fault`; level: sets `pin` to `on`, from outside; state: the
     true state of `pin`, with the time (monotonic, s) at which it changed last.
     """
     faults = WireFaults()
