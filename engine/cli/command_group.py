@@ -30,6 +30,7 @@ _IMPORT_PATHS = {
     "bus": "engine.cli.commands.bus:app",
     "devices": "engine.cli.commands.devices.devices:devices",
     "emulate": "engine.cli.commands.devices.emulate:emulate",
+    "equipment": "engine.cli.commands.devices.equipment:app",
     "reconcell": "engine.cli.commands.devices.reconcell:app",
     "cell": "engine.cli.commands.cell:app",
     "teach": "engine.cli.commands.teach:app",

@@ -11,6 +11,7 @@ import msgspec
 from engine.document.behavior import BehaviorDocument
 from engine.document.cell import CellDocument
 from engine.document.entries_document import EntriesDocument
+from engine.document.equipment.equipment_document import EquipmentDocument
 from engine.document.faults import FaultsDocument
 from engine.document.module_document import ModuleDocument
 from engine.document.parameter_spec import any_value
@@ -23,6 +24,7 @@ _MODELS = {
     "behavior": BehaviorDocument,
     "cell": CellDocument,
     "entries": EntriesDocument,
+    "equipment": EquipmentDocument,
     "faults": FaultsDocument,
     "module": ModuleDocument,
     "project": ProjectDocument,

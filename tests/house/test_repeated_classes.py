@@ -24,6 +24,8 @@ MOST_SHARED = 0.75
 """The share of the larger class."""
 CARTESIAN = "the same about joints and about the tool; their values have other types"
 DIFFERENT_FACTS: Mapping[str, str] = {
+    "DigitalOutputPin ~ PwmPin": "on or off, and a duty with a frequency; the kind tells them apart in the document",
+    "GpiozeroPins ~ ModbusPins": "a pigpiod and a PLC; both are at an address",
     "FrankaLoad ~ Payload": "by columns and about the centre, as libfranka takes it",
     "AttachedPart ~ HeldPart": "of the scene to plan in, where no link is the tool link; the topic names the link",
     "BusParameter ~ EntryDraft": "a setting and an entry, both typed and named",

@@ -29,6 +29,7 @@ from engine.cli.output.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import SECTIONS, load_entries
+from engine.document.equipment.equipment_file import load_equipment
 from engine.document.module_document import load_module
 from engine.document.project_file import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
@@ -45,6 +46,8 @@ _KINDS = (
     ("behavior", "sweep"),
     ("cell", "cell"),
     ("module", "module"),
+    ("equipment", "equipment"),
+    ("pin_configs", "equipment"),
     *((key, "entries") for key in SECTIONS.values()),
     ("faults", "faults"),
     ("substitutes", "substitutes"),
@@ -55,7 +58,8 @@ def check(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Behavior, cell, module, entries, sweep, faults, substitutes or project documents, or FILE.py:NAME.",
+            help="Behavior, cell, module, equipment, entries, sweep, faults, substitutes or project documents, or"
+            " FILE.py:NAME.",
             show_default=False,
         ),
     ] = None,
@@ -176,6 +180,9 @@ def findings_of(
             case "module":
                 load_module(file)
                 return ()
+            case "equipment":
+                load_equipment(file)
+                return ()
             case kind:
                 _load_of_runs(kind, file)
                 return ()
@@ -238,7 +245,7 @@ def _target_findings(
 
 
 def document_kind(file: Path) -> str:
-    """Return the kind of a document, by its keys: behavior, cell, module, entries, sweep, faults or substitutes.
+    """Return the kind of a document, by its keys: behavior, cell, module, equipment, entries, and so on.
 
     Raises:
         DocumentError: the document cannot be read, or is of no known kind.
@@ -251,7 +258,7 @@ def document_kind(file: Path) -> str:
     if recovered.mistakes:
         raise recovered.mistakes[0]
     raise DocumentError(
-        "this is not a behavior, cell, module, entries, sweep, faults or substitutes document",
+        "this is not a behavior, cell, module, equipment, entries, sweep, faults or substitutes document",
         where=Position(file=str(file), line=1, column=1),
         hint="a behavior has `root:`, a cell has `cell:`, a sweep has `behavior:`",
     )

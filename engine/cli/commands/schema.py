@@ -13,7 +13,7 @@ from engine.document.schema import schema_texts
 
 def schema(
     kind: Annotated[
-        Literal["behavior", "cell", "entries", "faults", "module", "substitutes", "sweep"],
+        Literal["behavior", "cell", "entries", "equipment", "faults", "module", "substitutes", "sweep"],
         typer.Argument(help="Kind of document."),
     ] = "behavior",
 ) -> None:

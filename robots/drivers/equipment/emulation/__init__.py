@@ -1,0 +1,1 @@
+"""An emulated pigpiod, for the real client pigpio."""
