@@ -121,3 +121,19 @@ def connected(
         client = EquipmentClient(connection, f"{host}:{port}")
         client.greet(name, control=control)
         yield client
+
+
+@contextmanager
+def connected_to_configure(host: str, port: int, *, name: str, timeout_s: float) -> Generator[EquipmentClient]:
+    """Connect for the commands of a person, without control of the outputs.
+
+    Raises:
+        RobotError: the server refuses, does not answer, or nothing listens there.
+    """
+    try:
+        with connected(host, port, name=name, timeout_s=timeout_s) as client:
+            yield client
+    except LinkError as error:
+        raise RobotError(
+            str(error), where=f"{host}:{port}", hint="see whether `flexcell equipment serve` runs there"
+        ) from error
