@@ -32,6 +32,12 @@ export default defineConfig({
         codeSplitting: {
           groups: [
             { name: 'first', tags: ['$initial'], priority: 2 },
+            // What edits text is large, and no view shows it at once.
+            {
+              name: 'text',
+              test: /node_modules\/(@codemirror|@lezer|crelt|style-mod|w3c-keyname)|components\/textFrame/,
+              priority: 1.5,
+            },
             { name: 'views', minShareCount: 3, priority: 1 },
           ],
         },

@@ -13,6 +13,7 @@ from engine.check import check_behavior
 from engine.document import parse_behavior
 from engine.document.cell import load_cell
 from engine.document.entries_document import load_entries
+from engine.document.equipment import read_equipment
 from engine.document.faults import parse_faults
 from engine.document.module_document import load_module
 from engine.document.substitutes import parse_substitutes
@@ -35,7 +36,7 @@ TRIGGERS = "\ntriggers:"
 NOTES = "canvas_notes:"
 TAGS = "\ntags:"
 FACTORS = "\nfactors:"
-MODULE = "\nmodule:"
+MODULE, EQUIPMENT = "\nmodule:", "\nequipment:"
 PARTS_OF_CELLS = (
     "robots:",
     "parts:",
@@ -96,6 +97,11 @@ def test_a_module_is_the_one_in_the_examples(text: str) -> None:
     file = EXAMPLES / text.partition("\n")[0].removeprefix("# ")
     assert text.partition("\n")[2] == file.read_text(encoding="utf-8")
     load_module(file)
+
+
+@shown(holding=EQUIPMENT)
+def test_equipment_has_no_mistake(text: str) -> None:
+    assert read_equipment(text, file=Path("clamps.yaml")).document.pins
 
 
 @shown(*PARTS_OF_TREES)
@@ -177,7 +183,7 @@ def test_free_notes_are_taken_beside_a_behavior(tmp_path: Path, text: str) -> No
 
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS, MODULE)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS, FACTORS, MODULE, EQUIPMENT)
     begun = (NOTES, *PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES, "search:", "require:")
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

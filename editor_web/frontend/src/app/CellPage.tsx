@@ -14,6 +14,7 @@ import { queryKeys } from '../api/queryKeys'
 import { hasCellView } from '../api/session'
 import type { CellDocumentName, CellStateFrame, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
+import { lazyView } from '../components/lazyView'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
@@ -24,7 +25,6 @@ import { CellFrame } from '../features/cell/CellFrame'
 import { DriverSwitch } from '../features/cell/DriverSwitch'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { AddMenu } from '../features/cellEditor/AddMenu'
-import { CellText } from '../features/cellEditor/CellText'
 import { EditorBar } from '../features/cellEditor/EditorBar'
 import { ItemForm } from '../features/cellEditor/ItemForm'
 import { openCellDocument } from '../features/cellEditor/session'
@@ -35,6 +35,7 @@ import { DevicePanel } from '../features/devices/DevicePanel'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
 
+const CellText = lazyView(async () => (await import('../features/cellEditor/CellText')).CellText)
 const NO_DOCUMENTS: readonly CellDocumentName[] = []
 
 interface CellPageProps {
