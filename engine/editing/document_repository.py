@@ -19,7 +19,7 @@ from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.text.yaml_source import parse_source
 from engine.editing.analysis.data_flow import KeyFlow, data_flow
-from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references, text_hash
+from engine.editing.analysis.diagnostics import DocumentAnalysis, find_external_references
 from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
 from engine.editing.cells.cell_documents import CellDocuments
 from engine.editing.cells.naming_behaviors import behaviors_naming
@@ -37,7 +37,7 @@ from engine.editing.stored_document import (
 from engine.editing.templates import new_text
 from engine.editing.text.draft import Draft
 from engine.editing.text.node_merge import NodeMerge, Side, merge_by_nodes
-from engine.editing.versions import DocumentVersion, VersionHistory, write_atomically
+from engine.editing.versions import DocumentVersion, VersionHistory, save_checked, write_atomically
 from engine.errors import DocumentError, Position
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.library.behavior_library import FindingView, Library
@@ -212,18 +212,14 @@ class DocumentRepository:
         file = self.file_of(document_id)
         _require_document(text, document_id)
         with self._changing(document_id):
-            there = read_stored(document_id, file)
-            if there.hash == text_hash(text):
-                return there
-            if there.hash != base_hash:
-                # Whatever is chosen, neither text is lost.
-                self._versions.keep(document_id, text, by="editor")
-            self._versions.keep(document_id, there.text)
-            if there.hash != base_hash:
-                raise DocumentConflict(there, self._merged(there, text, base_hash, {}))
-            write_atomically(file, text)
-            self._versions.keep(document_id, text, by="editor")
-        return read_stored(document_id, file)
+            return save_checked(
+                document_id,
+                file,
+                text,
+                base_hash=base_hash,
+                versions=self._versions,
+                merged=lambda there: self._merged(there, text, base_hash, {}),
+            )
 
     def merge(self, document_id: str, text: str, *, base_hash: str, sides: Mapping[str, Side]) -> DocumentConflict:
         """Return what a save of this text meets, merged with these choices; nothing is written."""

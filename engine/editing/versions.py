@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from engine.editing.analysis.diagnostics import text_hash
+from engine.editing.stored_document import DocumentConflict, StoredDocument, read_stored
+from engine.editing.text.node_merge import NodeMerge
 from engine.errors import DocumentError
 
 MAX_VERSIONS = 200
@@ -129,3 +131,41 @@ def write_atomically(file: Path, content: str | bytes) -> None:
     except OSError:
         fresh.unlink(missing_ok=True)
         raise
+
+
+def save_checked(
+    document_id: str,
+    file: Path,
+    text: str,
+    *,
+    base_hash: str,
+    versions: VersionHistory,
+    merged: Callable[[StoredDocument], NodeMerge | None],
+) -> StoredDocument:
+    """Write a document unless another text than that with `base_hash` is there; nothing that anybody wrote is lost.
+
+    Args:
+        document_id: Its id.
+        file: Where it is.
+        text: What is to be written.
+        base_hash: The text that the writer began from.
+        versions: Keeps what is there, and what is written.
+        merged: Merges the text with what is there.
+
+    Raises:
+        DocumentConflict: the document has another text now; both are kept.
+        DocumentError: it cannot be read.
+        OSError: it cannot be written.
+    """
+    there = read_stored(document_id, file)
+    if there.hash == text_hash(text):
+        return there
+    if there.hash != base_hash:
+        # Whatever is chosen, neither text is lost.
+        versions.keep(document_id, text, by="editor")
+    versions.keep(document_id, there.text)
+    if there.hash != base_hash:
+        raise DocumentConflict(there, merged(there))
+    write_atomically(file, text)
+    versions.keep(document_id, text, by="editor")
+    return read_stored(document_id, file)

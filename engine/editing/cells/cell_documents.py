@@ -13,12 +13,10 @@ import msgspec
 from engine.document.cell import Cell
 from engine.document.module_document import MODULE_FILE
 from engine.document.text.yaml_source import parse_source
-from engine.editing.analysis.diagnostics import text_hash
 from engine.editing.cells.cell_draft import CellDocumentKind, CellDraft, read_cell_draft
 from engine.editing.cells.cell_edit import AnyCellEdit
 from engine.editing.cells.cell_editing import CellEditAnswer, apply_cell_edits
 from engine.editing.stored_document import (
-    DocumentConflict,
     NoSuchDocument,
     StoredDocument,
     read_stored,
@@ -26,7 +24,7 @@ from engine.editing.stored_document import (
 )
 from engine.editing.text.node_merge import NodeMerge
 from engine.editing.text.three_way_merge import merge_texts
-from engine.editing.versions import VersionHistory, write_atomically
+from engine.editing.versions import VersionHistory, save_checked
 from engine.errors import DocumentError
 
 _MOST_MODULES = 200
@@ -124,18 +122,14 @@ class CellDocuments:
         if not isinstance(parse_source(text, file=document_id).data, dict):
             raise DocumentError("the document is not a mapping", where=document_id, hint="begin it with `flexcell: 1`")
         with self._writing, writing_errors(document_id):
-            there = read_stored(document_id, file)
-            if there.hash == text_hash(text):
-                return there
-            if there.hash != base_hash:
-                # Whatever is chosen, neither text is lost.
-                self._versions.keep(document_id, text, by="editor")
-            self._versions.keep(document_id, there.text)
-            if there.hash != base_hash:
-                raise DocumentConflict(there, self._merged(there, text, base_hash))
-            write_atomically(file, text)
-            self._versions.keep(document_id, text, by="editor")
-        return read_stored(document_id, file)
+            return save_checked(
+                document_id,
+                file,
+                text,
+                base_hash=base_hash,
+                versions=self._versions,
+                merged=lambda there: self._merged(there, text, base_hash),
+            )
 
     def _merged(self, there: StoredDocument, text: str, base_hash: str) -> NodeMerge | None:
         """Return the lines of both, where they change different ones and the result has no errors."""
