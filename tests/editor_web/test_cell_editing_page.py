@@ -5,16 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Generator
 from contextlib import suppress
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
 from editor_web.server import Dashboard
+from tests.editor_web.blue_arrow import tip_of_the_blue_arrow
 from tests.editor_web.browsing import SCHEMES, Scheme, opened_page, require_accessible
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.real_server import dashboard_of
@@ -161,20 +158,6 @@ def test_the_cell_is_connected_anew_with_what_was_saved(browser: Browser, tmp_pa
         expect(page.get_by_role("region", name="Details of frame_1")).to_contain_text("Position")
 
 
-def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
-    """Where the arrow along z ends on the screen, as long as nothing else in the view is of that blue."""
-    box = page.locator("iframe[title='3D view of the cell']").bounding_box()
-    assert box is not None
-    area: Any = {key: box[key] for key in ("x", "y", "width", "height")}
-    picture = np.asarray(Image.open(BytesIO(page.screenshot(clip=area, timeout=GUARD_MS))).convert("RGB"), dtype=int)
-    red, green, blue = (picture[..., channel] for channel in range(3))
-    rows, columns = np.nonzero((blue > 200) & (red < 90) & (green > 100) & (green < 160))
-    if len(rows) < 50:
-        return None
-    tip = rows < rows.min() + 8
-    return box["x"] + float(columns[tip].mean()), box["y"] + float(rows[tip].mean())
-
-
 def test_a_box_is_dragged_in_the_3d_view_by_whole_steps(browser: Browser, served: tuple[Dashboard, Path]) -> None:
     """Only the numbers of the form change; the document does when they are applied."""
     with opened_page(browser, served[0], "/workcell", quiet=False) as page:
@@ -185,10 +168,10 @@ def test_a_box_is_dragged_in_the_3d_view_by_whole_steps(browser: Browser, served
         page.get_by_label("Drag in the 3D view").select_option("usual")
         height = page.get_by_label("Position z")
         for _ in range(PULLS):
-            before, tip = None, tip_of_the_blue_arrow(page)
+            before, tip = None, tip_of_the_blue_arrow(page, "highest")
             # Until it is drawn, and where it stays.
             while tip is None or tip != before:
-                before, tip = tip, tip_of_the_blue_arrow(page)
+                before, tip = tip, tip_of_the_blue_arrow(page, "highest")
             page.mouse.move(*tip)
             page.mouse.down()
             page.mouse.move(tip[0], tip[1] - 50, steps=6)

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from io import BytesIO
-from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 
 from engine.messages import JointState
+from tests.editor_web.blue_arrow import tip_of_the_blue_arrow
 from tests.editor_web.browsing import opened_page, require_accessible, switch
-from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.teach_site import TeachSite
 
 MOVES_RAD_S, RESTS_RAD_S = 0.03, 0.01
@@ -24,20 +20,6 @@ PULLS, PATIENCE_S = 4, 15.0
 def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[TeachSite]:
     with TeachSite(host=loopback, project=tmp_path_factory.mktemp("dragged"), view=True) as opened:
         yield opened
-
-
-def tip_of_the_blue_arrow(page: Page) -> tuple[float, float] | None:
-    """Where the arrow along the tool ends on the screen; the blue of the handle is nowhere else in the view."""
-    box = page.locator("iframe[title='3D view of the cell']").bounding_box()
-    assert box is not None
-    area: Any = {key: box[key] for key in ("x", "y", "width", "height")}
-    picture = np.asarray(Image.open(BytesIO(page.screenshot(clip=area, timeout=GUARD_MS))).convert("RGB"), dtype=int)
-    red, green, blue = (picture[..., channel] for channel in range(3))
-    rows, columns = np.nonzero((blue > 200) & (red < 90) & (green > 100) & (green < 160))
-    if len(rows) < 50:
-        return None
-    tip = rows > rows.max() - 8
-    return box["x"] + float(columns[tip].mean()), box["y"] + float(rows[tip].mean())
 
 
 def require_focus_in(page: Page) -> None:
@@ -52,10 +34,10 @@ def fastest(state: JointState) -> float:
 def pull_until_it_goes(page: Page, site: TeachSite) -> None:
     """Press and pull at the handle; once more where a picture, late on a busy machine, showed it at another place."""
     for _ in range(PULLS):
-        before, tip = None, tip_of_the_blue_arrow(page)
+        before, tip = None, tip_of_the_blue_arrow(page, "lowest")
         # Until it is drawn, and where it stays.
         while tip is None or tip != before:
-            before, tip = tip, tip_of_the_blue_arrow(page)
+            before, tip = tip, tip_of_the_blue_arrow(page, "lowest")
         page.mouse.move(*tip)
         page.mouse.down()
         page.mouse.move(tip[0], tip[1] + 60, steps=6)

@@ -16,9 +16,6 @@ from robots.io.wire.link_error import LinkError
 from tests.robots.drivers.emulated_device import EmulatedProcess, emulated_device
 from tests.robots.drivers.equipment.served_equipment import PINS, doomed_client, served_equipment, waited_for
 
-pytest.importorskip("gpiozero", reason="pip install 'flexcell[gpio]'")
-pytest.importorskip("pigpio", reason="pip install 'flexcell[gpio]'")
-
 CLAMP, VALVE, THERE = 17, 22, 27
 SAFE_WITHIN_S = 0.3
 

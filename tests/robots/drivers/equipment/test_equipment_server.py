@@ -134,7 +134,6 @@ async def test_an_invalid_configuration_changes_nothing(tmp_path: Path) -> None:
 
 async def test_a_configuration_whose_pins_are_not_reached_is_taken_back(tmp_path: Path) -> None:
     """The one before is served again, and the file has it."""
-    pytest.importorskip("pymodbus")
     unreached = SIMULATED.replace("{kind: simulated}", "{kind: modbus_tcp, host: 127.0.0.1, port: 1}")
     async with running(tmp_path) as (server, configuration):
         base = (await asked(server, lambda client: client.configuration())).digest

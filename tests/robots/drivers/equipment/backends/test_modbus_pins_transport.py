@@ -15,8 +15,6 @@ from robots.drivers.equipment.backends.pin_values import PinCommand
 from robots.io.wire.link_error import LinkError
 from tests.robots.drivers.equipment.served_equipment import PINS
 
-pytest.importorskip("pymodbus", reason="pip install 'flexcell[modbus]'")
-
 PLC = """
 import asyncio, socket
 from pymodbus.server import ModbusTcpServer
