@@ -25,8 +25,9 @@ from robots.sim.world.sim_world import new_world as new_sim_world
 from robots.standard_tools.tool_simulation import tool_server
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene
+from robots.workspace.monitored_separation import MonitoredSeparation
 from robots.workspace.planning_services import PlanningServices
-from robots.workspace.separation_rule import separation_rule
+from robots.workspace.separation_rule import rest_distance_m, separation_rule
 from robots.workspace.separation_supervisor import SeparationSupervisor
 from robots.workspace.unknown_space import UnknownSpaceRule
 from robots.workspace.workspace import Workspace
@@ -56,12 +57,14 @@ def new_world(
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
+        separation = MonitoredSeparation(rest_distance_m(rule)) if rule is not None else None
         workspace = Workspace(
             partial(_live_scene, world),
             planners=PlanningServices(bus.clock),
             clock=bus.clock,
             occupancy=cameras if cell.document.occupancy is not None else None,
             unknown_space=UnknownSpaceRule.of(cell.document.occupancy, cameras=cell.document.cameras),
+            separation=separation,
         )
         arms = tuple(
             _arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms if not placement.driven
@@ -70,11 +73,17 @@ def new_world(
             world.modules.watch(cameras.take_scene)
         world.modules.watch(workspace.take_scene)
         devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
-        if rule is not None and cameras is not None:
-            look = WorldPoseReader(world, scene)
-            devices += (
-                SeparationSupervisor(world, scene, sensor=cameras, workspace=workspace, look=look, clock=bus.clock),
+        if separation is not None and cameras is not None:
+            supervisor = SeparationSupervisor(
+                world,
+                scene,
+                sensor=cameras,
+                workspace=workspace,
+                separation=separation,
+                look=WorldPoseReader(world, scene),
+                clock=bus.clock,
             )
+            devices += (supervisor,)
         return (*devices, *arms)
 
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line, cell=cell)

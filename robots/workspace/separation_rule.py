@@ -33,6 +33,11 @@ def separation_rule(document: CellDocument) -> SeparationRule | None:
     )
 
 
+def rest_distance_m(rule: SeparationRule) -> float:
+    """Return the protective distance of an arm at rest, whose stop takes no time and no way."""
+    return rule.hand_speed_m_s * rule.reaction_s + rule.intrusion_m + rule.uncertainty_m
+
+
 def _intrusion_m(monitoring: SpeedAndSeparationMonitoring, voxel_m: float) -> float:
     if monitoring.intrusion_distance_m is not None:
         return monitoring.intrusion_distance_m

@@ -24,6 +24,7 @@ from robots.sim.world.sim_world import SimWorld
 from robots.vision.known_geometry import ArmConfiguration
 from robots.vision.occupancy.arm_body import ArmBody
 from robots.workspace.measured_poses import MeasuredPoses, PoseSource
+from robots.workspace.monitored_separation import MonitoredSeparation
 from robots.workspace.separation_measurement import (
     NearestBody,
     UnknownBodies,
@@ -86,6 +87,7 @@ class SeparationSupervisor:
         scene: Their placements, and the step of the world.
         sensor: The occupancy map.
         workspace: Knows what the arms hold.
+        separation: Takes what is measured, for the motions.
         look: Measures the cell.
         clock: The cell's clock.
     """
@@ -99,6 +101,7 @@ class SeparationSupervisor:
         *,
         sensor: SeparationSensor,
         workspace: Workspace,
+        separation: MonitoredSeparation,
         look: PoseSource,
         clock: Clock,
     ) -> None:
@@ -106,6 +109,7 @@ class SeparationSupervisor:
         self._placements = scene.arms
         self._sensor = sensor
         self._workspace = workspace
+        self._separation = separation
         self._look = look
         self._clock = clock
         self._arms: dict[str, _MonitoredArm] = {}
@@ -188,6 +192,7 @@ class SeparationSupervisor:
             else:
                 nearest = self._send_distance(arm, look)
                 state = _state(snapshot.time_s, snapshot.permitted(arm.name), nearest)
+            self._separation.record(arm.name, state)
             notified = self._publish(arm.name, state) or notified
         return notified
 

@@ -33,6 +33,7 @@ from robots.scene.sim_scene import SimScene
 from robots.vision.occupancy.occupancy_source import OccupancySource
 from robots.workspace.collision_reports import collision_report
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
+from robots.workspace.monitored_separation import MonitoredSeparation
 from robots.workspace.occupancy_freshness import wait_until_fresh
 from robots.workspace.path_reservations import Row
 from robots.workspace.planning_services import PlanningServices
@@ -62,6 +63,7 @@ class Workspace:
         clock: The cell's clock.
         occupancy: The occupancy map of the cameras, if the cell has cameras.
         unknown_space: What the cell demands of space that the cameras have not seen.
+        separation: What separation monitoring permits; None for a cell without.
     """
 
     name = "cell/workspace"
@@ -74,6 +76,7 @@ class Workspace:
         clock: Clock,
         occupancy: OccupancySource | None = None,
         unknown_space: UnknownSpaceRule | None = None,
+        separation: MonitoredSeparation | None = None,
     ) -> None:
         self._make_scene = make_scene
         self._live: LiveScene | None = None
@@ -84,6 +87,7 @@ class Workspace:
         self._clock = clock
         self._occupancy = occupancy
         self.unknown_space = unknown_space or UnknownSpaceRule()
+        self.separation = separation
         self._unsubscribe: Callable[[], None] = _no_operation
         self._topic: Topic[PlanningSceneState] | None = None
         self._watchers: list[ChangeListener] = []

@@ -32,8 +32,9 @@ _log = logging.getLogger("flexcell.arm")
 class AdaptiveMotion(MonitoredMotion):
     """Monitors consecutive motions of the port, each along a planned path.
 
-    At rest it resumes the remaining path if that is free again, else follows a new path from there, else tries again
-    after the next change. A hold persists through all of that; a cancel ends it.
+    It also stops when separation monitoring has made the arm creep or stand for a while, and then prefers a path that
+    keeps away from whoever is near. At rest it resumes the remaining path if that is free again, else follows a new
+    path from there, else tries again after the next change. A hold persists through all of that; a cancel ends it.
 
     Args:
         segment: The first path, which starts at the set point; or the reason why there is none yet: the motion then
@@ -68,7 +69,7 @@ class AdaptiveMotion(MonitoredMotion):
         self._checking = False
         self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._attempts, self._stops = 0, runner.stops
-        self._detected_late = self._replan_failure = ""
+        self._detected_late = self._replan_failure = self._slowed = ""
         self.statistics = AdaptiveMotionReport()
         self.phase: MotionPhase = "moving"
         self.reason = ""
@@ -126,7 +127,7 @@ class AdaptiveMotion(MonitoredMotion):
         self._enter("moving", "")
         self._reservation.update(self._passed_s)
         while not end.done():
-            await self._next_change()
+            await self._next_change(self._paths.look_s)
             if end.done() or self._cancelled:
                 await asyncio.wait((end,))
                 return None
@@ -141,21 +142,30 @@ class AdaptiveMotion(MonitoredMotion):
             if collision is not None and not end.done():
                 await self._stop_before(inner, collision)
                 return self.reason
+            slow = self._paths.slow_reason
+            if slow and (self._waiting.may_search or self._paths.near_reason) and not end.done():
+                self._slowed = slow
+                await self._stop(inner, slow)
+                return slow
         return None
 
     async def _stop_before(self, inner: Motion, collision: PredictedCollision) -> None:
         """Come to rest before a predicted collision, and report if the arm stops too late."""
-        if not self._halted:
-            # If the arm was held meanwhile, that hold stopped it, not this.
-            self.statistics.stops += 1
-            self._halted = True
-        self._enter("braking", collision.reason)
-        _log.info("%s stops: %s", self._runner.name, collision.reason)
-        await inner.hold()
+        await self._stop(inner, collision.reason)
         if self._passed_s >= collision.at_s:
             self._detected_late = "; it was detected too late to stop before it"
             self._enter("braking", collision.reason + self._detected_late)
             _log.warning("%s stopped too late: %s", self._runner.name, collision.reason)
+
+    async def _stop(self, inner: Motion, reason: str) -> None:
+        """Come to rest on the path."""
+        if not self._halted:
+            # If the arm was held meanwhile, that hold stopped it, not this.
+            self.statistics.stops += 1
+            self._halted = True
+        self._enter("braking", reason)
+        _log.info("%s stops: %s", self._runner.name, reason)
+        await inner.hold()
 
     async def _until_free(self, reason: str) -> MotionReport | None:
         """Wait at rest until the arm moves again (None), or until the motion has ended."""
@@ -221,6 +231,8 @@ class AdaptiveMotion(MonitoredMotion):
                 return await self._resume(reused=False)
             if monitor.unobserved_reason:
                 return monitor.unobserved_reason
+            if near := monitor.near_reason:
+                return near
             if self.reason and not waiting.has_rested(stops=self.statistics.stops):
                 return self.reason
             # Two processes work in parallel: one checks the path while the other searches in case it is needed.
@@ -231,14 +243,14 @@ class AdaptiveMotion(MonitoredMotion):
                 blocked = "no path found yet"
                 if self._inner is not None and self._segment is not None:
                     blocked = await self._answer(monitor.rest_of(self._segment, from_s=self._passed_s))
-                if not blocked:
-                    return await self._resume(reused=reused)
-                if waiting.may_search:
+                if waiting.may_search and (why := blocked or self._slowed):
                     started_s = self._clock.now_s()
-                    self._replan_failure = await self._follow_new_path(blocked, search or self._begin_search())
+                    self._replan_failure = await self._follow_new_path(why, search or self._begin_search())
                     if not self._replan_failure:
                         return ""
                     waiting.searched(took_s=self._clock.now_s() - started_s)
+                if not blocked:
+                    return await self._resume(reused=reused)
                 return blocked + self._detected_late + self._replan_failure
             finally:
                 await discard_query(search)
@@ -249,7 +261,8 @@ class AdaptiveMotion(MonitoredMotion):
     def _begin_search(self) -> asyncio.Future[PathSegment | PlanRefusal]:
         self._attempts += 1
         start = self._runner.port.sample().desired_rad
-        return asyncio.ensure_future(self._planner.find(start, attempt=self._attempts - 1))
+        apart_m = self._paths.apart_m if self._slowed else 0.0
+        return asyncio.ensure_future(self._planner.find(start, attempt=self._attempts - 1, apart_m=apart_m))
 
     async def _follow_new_path(self, blocked: str, search: asyncio.Future[PathSegment | PlanRefusal]) -> str:
         """Follow a new path from here once it is planned; return the reason of a failure, empty on success."""
@@ -283,7 +296,8 @@ class AdaptiveMotion(MonitoredMotion):
         if self._held or self._cancelled or inner is None:
             return _HELD
         self._halted = False
-        self._detected_late = self._replan_failure = ""
+        self._detected_late = self._replan_failure = self._slowed = ""
+        self._paths.begin()
         await inner.resume()
         if reused:
             self.statistics.reused += 1
@@ -302,7 +316,8 @@ class AdaptiveMotion(MonitoredMotion):
         with canceled_by_errors(motion):
             self._monitor(motion, segment.trajectory)
             self._segment = segment
-            self._detected_late = self._replan_failure = ""
+            self._detected_late = self._replan_failure = self._slowed = ""
+            self._paths.begin()
             self._listener.follows(segment)
 
     @property

@@ -22,6 +22,8 @@ _RECENT_S, _APART_M = 0.5, 0.08
 # So far a hand at 1.6 m/s (ISO 13855) gets within two images at 15 Hz, their processing and the shortest stop: an arm
 # that starts while voxels have been filled within this distance and time is touched in motion.
 _APPROACH_S, _APPROACH_M = 0.2, 0.4
+# Separation monitoring makes an arm creep while nothing in the scene changes.
+_SEPARATION_LOOK_S = 0.25
 # Fewer voxels are the edge of something at rest, which is hit in some images only.
 _LEAST_FILLED = 4
 
@@ -51,6 +53,34 @@ class PathMonitor:
     def unobserved_reason(self) -> str:
         """Why the scene is not observed; empty if it is."""
         return self._workspace.unobserved_reason
+
+    @property
+    def look_s(self) -> float | None:
+        """The time after which a moving arm looks without a change of the scene, in seconds."""
+        return _SEPARATION_LOOK_S if self._workspace.separation is not None else None
+
+    @property
+    def slow_reason(self) -> str:
+        """Who makes the arm creep or stand by separation monitoring; empty if nobody does."""
+        separation = self._workspace.separation
+        return separation.slow_reason(self._runner.name) if separation is not None else ""
+
+    @property
+    def near_reason(self) -> str:
+        """Who is so near that separation monitoring permits no motion; empty if nobody is."""
+        separation = self._workspace.separation
+        return separation.near_reason(self._runner.name) if separation is not None else ""
+
+    @property
+    def apart_m(self) -> float:
+        """The distance from all that the cameras see which a new path should keep, 0 without separation monitoring."""
+        separation = self._workspace.separation
+        return separation.apart_m(self._runner.name) if separation is not None else 0.0
+
+    def begin(self) -> None:
+        """Take note that the arm begins to move."""
+        if self._workspace.separation is not None:
+            self._workspace.separation.begin(self._runner.name)
 
     async def ahead(self, segment: PathSegment, *, from_s: float) -> PredictedCollision | None:
         """Return the collision on the remaining path that the arm follows; None if it is free."""

@@ -27,6 +27,7 @@ from robots.planning.request import (
 )
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.vision.occupancy.inflated_occupancy import inflated
 from robots.workspace.path_reservations import describe_names
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
@@ -78,22 +79,26 @@ class PathPlanner:
         self._tool = tool
         self._unknown_space = UnknownSpaceCheck(arm, workspace)
 
-    async def find(self, start: Array, *, attempt: int = 0) -> PathSegment | PlanRefusal:
+    async def find(self, start: Array, *, attempt: int = 0, apart_m: float = 0.0) -> PathSegment | PlanRefusal:
         """Plan a path from `start` (n,) in the current scene; each attempt uses another seed.
 
-        What becomes of a path through space that no camera has seen is what the cell demands.
+        With `apart_m` its links keep that distance from all that the cameras see. What becomes of a path through
+        space that no camera has seen is what the cell demands.
 
         Raises:
             RobotError: the planning process has ended.
             CellError: the scene is invalid.
         """
-        found = await self._search(start, attempt)
+        found = await self._search(start, attempt, apart_m)
         if isinstance(found, PlanRefusal):
             return found
         return await self._through_known_space(found, start, attempt)
 
-    async def _search(self, start: Array, attempt: int) -> PathSegment | PlanRefusal:
-        options = self._options
+    async def _search(self, start: Array, attempt: int, apart_m: float) -> PathSegment | PlanRefusal:
+        options, grid = self._options, self._workspace.occupancy
+        if apart_m > options.margin_m and grid is not None:
+            wider = inflated(grid, apart_m - options.margin_m)
+            return await self._ask(start, options.margin_m, options.time_s, attempt, occupancy=wider)
         wide = await self._ask(start, options.margin_m + EXTRA_MARGIN_M, options.time_s * _SPARE_SHARE, attempt)
         if not isinstance(wide, PlanRefusal) or wide.reason not in TRANSIENT_REASONS:
             return wide

@@ -36,6 +36,7 @@ from robots.planning.worker.inline_planner import InlinePlanner
 from robots.scene.sim_scene import ArmPlacement
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
+from robots.workspace.monitored_separation import MonitoredSeparation
 from robots.workspace.planning_services import PlanningServices
 from robots.workspace.unknown_space import UnknownSpaceRule
 from robots.workspace.workspace import Workspace
@@ -212,7 +213,10 @@ class FakeCell:
 
 @asynccontextmanager
 async def fake_cell(
-    *, tool: ToolServer | None = None, unknown_space: UnknownSpaceRule | None = None
+    *,
+    tool: ToolServer | None = None,
+    unknown_space: UnknownSpaceRule | None = None,
+    separation: MonitoredSeparation | None = None,
 ) -> AsyncGenerator[FakeCell]:
     """The left Panda at a table, on a bus."""
     model, clock = panda_model(), new_clock()
@@ -236,6 +240,7 @@ async def fake_cell(
         clock=clock,
         occupancy=cameras,
         unknown_space=unknown_space,
+        separation=separation,
     )
     arm = ArmServer(
         name="left", model=model, base=BASE.to_pose("world"), port=port, clock=clock, gripper=tool, workspace=workspace
