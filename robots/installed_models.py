@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from engine.cell import CameraCoverage, RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
@@ -66,6 +67,12 @@ class InstalledModels:
         from robots.vision.camera_coverage import camera_coverage
 
         return camera_coverage(cell)
+
+    def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
+        """Write the scene of a cell for other programs; raises CellError or DocumentError as its writer does."""
+        from robots.scene_export.write_scene import write_scene
+
+        return write_scene(cell, file)
 
 
 MODELS: RobotModels = InstalledModels()

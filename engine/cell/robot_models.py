@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from pathlib import Path
 from typing import Protocol
 
 import msgspec
@@ -71,6 +72,18 @@ class RobotModels(Protocol):
 
         Raises:
             CellError: the cell has no cameras with a map, or cannot be simulated.
+            DocumentError: as `summary`.
+        """
+        ...
+
+    def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
+        """Write the scene of a cell for other programs, as MJCF, URDF or glTF by the name of the file.
+
+        Returns:
+            The written files, `file` first.
+
+        Raises:
+            CellError: the format is unknown, the cell cannot be simulated, or a file cannot be written.
             DocumentError: as `summary`.
         """
         ...

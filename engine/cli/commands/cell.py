@@ -13,7 +13,7 @@ import typer
 from engine.cell.camera_coverage import RegionCoverage
 from engine.cell.cell_connection import CellConnection
 from engine.cell.remote_cell import connect_remote_cell, remote_cell_connection
-from engine.cell.robot_models import robot_models
+from engine.cell.robot_models import RobotModels, robot_models
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import load_cell
 from engine.errors import CellError
@@ -21,7 +21,8 @@ from engine.host.state_folder_names import STATE_FOLDER
 from engine.messages import Vector3
 
 app = typer.Typer(
-    help="Show or restore the connection to the devices of a running server's cell; show what its cameras see.",
+    help="Show or restore the connection to the devices of a running server's cell; show what the cameras of a cell see;"
+    " export its scene.",
     no_args_is_help=True,
 )
 
@@ -55,14 +56,36 @@ def coverage(
 
     `flexcell cell coverage behaviors/cells/irb4600_shared.yaml`
     """
-    models = robot_models()
-    if models is None:
-        raise CellError("no installed package provides robot models", hint="install flexcell with its robots")
-    found = models.camera_coverage(load_cell(file))
+    found = _models().camera_coverage(load_cell(file))
     for region in (*found.regions, found.whole):
         sys.stdout.write(f"{_region_line(region)}\n")
     if any(100.0 * region.seen < fail_under for region in found.regions or (found.whole,)):
         raise typer.Exit(ExitCode.OTHER_OUTCOME)
+
+
+@app.command("export")
+def export(
+    file: Annotated[Path, typer.Argument(help="Cell document.", show_default=False)],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--output", help="The file to write: .xml (MJCF), .urdf, or .glb (glTF).", show_default=False
+        ),
+    ],
+) -> None:
+    """Write the scene of a cell for other programs: its arms at home, fixtures, parts and frames. Nothing is connected.
+
+    `flexcell cell export behaviors/cells/ur10.yaml -o ur10.glb`
+    """
+    for written in _models().write_scene(load_cell(file), output):
+        sys.stdout.write(f"{written}\n")
+
+
+def _models() -> RobotModels:
+    models = robot_models()
+    if models is None:
+        raise CellError("no installed package provides robot models", hint="install flexcell with its robots")
+    return models
 
 
 def _region_line(region: RegionCoverage) -> str:

@@ -69,15 +69,8 @@ def build_cell(scene: SimScene) -> CellModel:
     Raises:
         CellError: a robot model is unknown, a shape is invalid, or MuJoCo rejects the result.
     """
-    spec, errors = _empty_world(scene), PlantErrors(scene)
-    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
-        _add_fixture(spec, fixture)
-    for part in (*scene.parts, *scene.unknown_parts):
-        _add_part(spec, part, errors)
+    spec = cell_spec(scene)
     models = {arm.name: arm.robot() for arm in scene.arms}
-    for arm in scene.arms:
-        _add_arm(spec, arm, models[arm.name], scene.fixtures, errors)
-    _add_people(spec, scene)
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -103,6 +96,23 @@ def build_cell(scene: SimScene) -> CellModel:
         body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
         people=tuple(person_indices(compiled, person) for person in scene.people),
     )
+
+
+def cell_spec(scene: SimScene) -> Any:
+    """Return a scene as MuJoCo's specification, before it is compiled.
+
+    Raises:
+        CellError: a robot model is unknown, or a shape is invalid.
+    """
+    spec, errors = _empty_world(scene), PlantErrors(scene)
+    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
+        _add_fixture(spec, fixture)
+    for part in (*scene.parts, *scene.unknown_parts):
+        _add_part(spec, part, errors)
+    for arm in scene.arms:
+        _add_arm(spec, arm, arm.robot(), scene.fixtures, errors)
+    _add_people(spec, scene)
+    return spec
 
 
 def _empty_world(scene: SimScene) -> Any:

@@ -1,0 +1,1 @@
+"""The scene of a cell as a file for other programs: MJCF, URDF and glTF."""
