@@ -12,6 +12,8 @@ from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
 _IMPORT_PATHS = {
+    "new": "engine.cli.commands.documents.new_project:new",
+    "examples": "engine.cli.commands.documents.new_project:examples",
     "run": "engine.cli.commands.run:run",
     "resume": "engine.cli.commands.resume:resume",
     "stop": "engine.cli.main:stop",

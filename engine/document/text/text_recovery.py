@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from engine.document.text.syntax_errors import LineMistake
 from engine.document.text.yaml_source import (
     DataPath,
     DocumentSource,
-    LineMistake,
     PositionTree,
     load_text,
     parse_source,

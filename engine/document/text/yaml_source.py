@@ -21,6 +21,7 @@ import yaml
 
 from engine.document.text.chunked_text import ChunkedText
 from engine.document.text.core_schema import plain_scalar, shorten_scalar
+from engine.document.text.syntax_errors import LineMistake, TextMark, syntax_error
 from engine.errors import DocumentError, Position
 from engine.wording.misfit import DataPath
 
@@ -31,7 +32,6 @@ MAX_EXPRESSIONS = 20_000
 MAX_EXPRESSION_TEXT = 100_000
 """Maximum total number of characters of texts with expressions."""
 
-_OPENING = ("while parsing a flow", "while scanning a quoted scalar")
 # A positive class, as a complement takes ten times as long to compile.
 _UNREADABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
@@ -70,12 +70,6 @@ class DocumentSource:
         if of_key:
             return Position(file=file, line=place.key_line + 1, column=place.key_column + 1)
         return Position(file=file, line=place.line + 1, column=place.column + 1)
-
-
-class LineMistake(DocumentError):
-    """A mistake in the block that begins on `line`, from 0; the text may be readable without it."""
-
-    line: int = 0
 
 
 def load_source(path: Path) -> DocumentSource:
@@ -194,15 +188,10 @@ def _refuse(file: str, line: int, column: int, message: str, hint: str | None = 
     raise DocumentError(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
 
 
-class _Mark(Protocol):
-    line: int
-    column: int
-
-
 class _Event(Protocol):
     """The members of PyYAML's parser events that are used here."""
 
-    start_mark: _Mark
+    start_mark: TextMark
     anchor: str | None
     tag: str | None
     value: str
@@ -223,57 +212,11 @@ def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
                 break
     except yaml.MarkedYAMLError as error:
         # In no variable here, which would keep this frame and those of all callers in memory.
-        raise _syntax_error(error, file, text) from None
+        raise syntax_error(error, file, text) from None
     except yaml.YAMLError as error:
         raise DocumentError(str(error).splitlines()[0], where=Position(file=file, line=1, column=1)) from None
     finally:
         parser.dispose()
-
-
-# What libyaml says, and what it means to whoever wrote the document, with what to do.
-_IN_OUR_WORDS = {
-    "did not find expected node content": (
-        "a value is missing before this place",
-        "close what is open with `]` or `}`, or put the text in quotes",
-    ),
-    "did not find expected ',' or ']'": ("unmatched bracket", "close it with `]`, or put the text in quotes"),
-    "did not find expected key": (
-        "no key is here, where one must be",
-        "compare the indentation with the lines above, and close what is open there",
-    ),
-    "did not find expected '-' indicator": (
-        "no `-` is here, where the list goes on",
-        "compare the indentation with the items above",
-    ),
-    "could not find expected ':'": ("a `:` is missing after a key", "write `key: value`"),
-    "found character that cannot start any token": ("no value can begin with this character", "put the text in quotes"),
-    "found unexpected end of stream": ("unexpected end of the document in a text", "close the quotes"),
-    "block sequence entries are not allowed in this context": (
-        "a list begins beside something else",
-        "begin it on a line of its own",
-    ),
-}
-
-
-def _syntax_error(error: yaml.MarkedYAMLError, file: str, text: str) -> LineMistake:
-    mark = cast("_Mark | None", error.problem_mark or error.context_mark)
-    line, column = (mark.line, mark.column) if mark is not None else (0, 0)
-    lines = text.split("\n", line + 1)
-    here = lines[line][column : column + 1] if line < len(lines) else ""
-    message, hint = error.problem or "this is not YAML", error.context
-    if here == "\t":
-        message, hint = "YAML requires spaces here, not a tab", "indent with spaces"
-    elif here in ("{", "}") or "expected ',' or '}'" in message:
-        message, hint = "unmatched brace", "put text with `${…}` in quotes"
-    elif "mapping values are not allowed" in message:
-        message, hint = "a second `:` on this line", "put the text in quotes"
-    else:
-        message, hint = _IN_OUR_WORDS.get(message, (message, hint))
-    refusal = LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
-    # An unclosed block is detected only where another one begins.
-    begins = error.context_mark if (error.context or "").startswith(_OPENING) else None
-    refusal.line = begins.line if begins is not None else line
-    return refusal
 
 
 class _Builder:
@@ -329,7 +272,7 @@ class _Builder:
         if event.tags:
             self._refuse(event, "`%TAG` is not supported")
 
-    def _count(self, event: _Event) -> _Mark:
+    def _count(self, event: _Event) -> TextMark:
         self._nodes += 1
         if self._nodes > MAX_NODES:
             self._refuse(event, f"the document has more than {MAX_NODES} values", "split it with behavior references")
