@@ -31,9 +31,9 @@ _KINDS = frozenset((
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame
 in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`,
-`obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell document
-declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any
-service or action: only an open cell knows those."""
+`obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell
+document `body`, declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any
+topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -87,7 +87,7 @@ class CellNames:
         """
         other = next((of for of in _others(kind) if name in self.by_kind.get(of, ())), None)
         if other is not None:
-            return f"`{name}` is a {_word(other)}"
+            return f"`{name}` is {'' if other == 'equipment' else 'a '}{_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
         if kind in _OWNED:
             owner, _, below = name.partition("/")
