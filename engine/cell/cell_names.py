@@ -32,8 +32,8 @@ _KINDS = frozenset((
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame
 in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`,
 `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell
-document `body`, declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any
-topic, `skill` any service or action: only an open cell knows those."""
+document declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic,
+`skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",

@@ -12,12 +12,16 @@ from typing import cast
 
 import pytest
 
+from engine.bus import SkillBus
+from engine.cell.drivers import DeviceReport
 from engine.cell.open_cell import OpenCell
+from engine.clock import new_clock
 from engine.errors import RobotError
 from engine.messages.device_state import DeviceState
 from engine.skills.digital_outputs import SetOutput
 from robots.drivers.equipment.configuration_file import ConfigurationFile
 from robots.drivers.equipment.device.equipment_device import EquipmentDevice
+from robots.drivers.equipment.device.equipment_transport import EquipmentCommand, EquipmentTransport
 from robots.drivers.equipment.equipment_server import EquipmentServer
 from robots.drivers.equipment.wire.equipment_client import connected
 from tests.robots.drivers.equipment.device.equipment_cell import (
@@ -126,6 +130,50 @@ async def test_stop_makes_safe_what_the_document_says_and_sets_nothing_that_wait
         await asyncio.sleep(0.1)
         assert outputs(cell.bus) == {"clamp": False, "valve": False}
         assert not all(each.result().success for each in waiting)
+
+
+class BusyTransport(EquipmentTransport):
+    """Its connection that controls is busy with a request until it is released."""
+
+    def __init__(self, *, port: int) -> None:
+        super().__init__(host="127.0.0.1", port=port, client="a test", timeout_s=0.5)
+        self.busy, self.released = threading.Event(), threading.Event()
+
+    def write(self, command: EquipmentCommand) -> None:
+        """Wait, and send what was not revoked meanwhile."""
+        if command.values.get("clamp") is False:
+            self.busy.set()
+            while not self.released.wait(0.02):
+                self.read()  # it is alive: the server does not end its control
+        super().write(command)
+
+
+async def test_a_busy_connection_does_not_delay_stop(tmp_path: Path) -> None:
+    """And what it was busy with is not set afterwards."""
+    async with server_of(tmp_path) as server:
+        transport = BusyTransport(port=server.port)
+        about = DeviceReport(device=VICE, driver="equipment", address=transport.address)
+        async with SkillBus(new_clock()) as bus, EquipmentDevice(VICE, transport, pins=None, about=about) as device:
+            device.register(bus)
+            await device.enable(WHY)
+            assert (await switched(bus, "valve", on=True)).success
+            waiting = asyncio.create_task(switched(bus, "clamp", on=False))
+            await asyncio.to_thread(transport.busy.wait, 20.0)
+            stopping = asyncio.create_task(device.stop())
+            try:
+                while (await asyncio.to_thread(values_of, server.port))["valve"]:
+                    assert not stopping.done()
+            finally:
+                transport.released.set()
+            await stopping
+            assert not (await waiting).success
+            assert await asyncio.to_thread(values_of, server.port) == {"clamp": True, "valve": False, "there": False}
+
+
+def values_of(port: int) -> dict[str, bool | float]:
+    """Return what another client reads."""
+    with connected("127.0.0.1", port, name="witness") as witness:
+        return witness.read().values
 
 
 async def test_after_a_cut_values_are_read_and_nothing_is_set_until_it_is_enabled_anew(tmp_path: Path) -> None:
