@@ -27,6 +27,7 @@ _TIMING = LinkTiming(period_s=0.02, stale_s=0.5, silence_s=0.2)
 _READ_BACK_S = 1.0
 _REPORT_LIMIT_S = 20.0
 _STOPPED = "STOP came before it was set"
+_ENABLE_HINT = "look at the equipment, then permit it: `flexcell run --enable REASON`, or the skill enable_device"
 _log = logging.getLogger("flexcell.devices")
 
 
@@ -102,11 +103,11 @@ class EquipmentDevice:
         waiting = dict(self._pending)
         for command in waiting:
             command.revoked = _STOPPED
-        await self._tell_stop()
+        await self._send_stop()
         if waiting:
             # One of them may have been on the wire already, and been executed after STOP.
             await asyncio.wait(waiting.values())
-            await self._tell_stop()
+            await self._send_stop()
 
     async def reconnect(self) -> str:
         """Accept the connection that reads again; outputs need `EnableDevice` besides, and none is set.
@@ -271,7 +272,7 @@ class EquipmentDevice:
         """Set an output and return when it is read back; raises RobotError."""
         problem = self._blocked()
         if problem:
-            raise RobotError(problem, where=self._name, hint="a person enables it: flexcell cell enable")
+            raise RobotError(problem, where=self._name, hint=_ENABLE_HINT)
         link = self._opened()
         command = EquipmentCommand(action="set", values={output: on})
         self._pending[command] = written = link.submit(command)
@@ -289,9 +290,9 @@ class EquipmentDevice:
         finally:
             command.revoked = command.revoked or "it was not waited for"
 
-    async def _tell_stop(self) -> None:
+    async def _send_stop(self) -> None:
         try:
-            await asyncio.to_thread(self._transport.tell_stop)
+            await asyncio.to_thread(self._transport.send_stop)
         except (LinkError, RobotError) as error:
             if self._lost_reason or self._link is None or self._link.lost_reason:
                 return  # the server has made outputs safe when it lost this client; the loss is told already

@@ -117,7 +117,7 @@ class EquipmentTransport:
         except RobotError as error:
             command.refusal = error
 
-    def tell_stop(self) -> None:
+    def send_stop(self) -> None:
         """Send STOP on a connection of its own, which waits for no other request.
 
         Raises:
