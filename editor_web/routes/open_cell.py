@@ -16,7 +16,15 @@ from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody, Simulat
 from editor_web.http_bodies.document_bodies import ConflictBody, SaveBody, SaveResultBody, TextBody
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
-from engine.cell import CellConnection, CellItems, DeviceDetails, devices_of_cell, items_of_cell
+from engine.cell import (
+    CellConnection,
+    CellItems,
+    DeviceDetails,
+    ModelNames,
+    devices_of_cell,
+    items_of_cell,
+    model_names,
+)
 from engine.editing import ReferringBehavior
 from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
 
@@ -34,6 +42,13 @@ async def get_items(services: ServicesOf) -> CellItems:
     backend = services.backend
     topics = [topic.name for topic in backend.inspector.topics()]
     return await run_in_threadpool(items_of_cell, backend.cell.document, name=backend.cell_name, topics=topics)
+
+
+@router.get("/models")
+def get_model_names(services: ServicesOf) -> ModelNames:
+    """Return the models of robots and tools that the document of a cell may name."""
+    del services
+    return model_names()
 
 
 @router.get("/devices")

@@ -11,6 +11,7 @@ _HOMES = {
     "CellItem": "engine.cell.cell_items",
     "CellItems": "engine.cell.cell_items",
     "DeviceDetails": "engine.cell.device_details",
+    "ModelNames": "engine.cell.robot_models",
     "OpenCell": "engine.cell.open_cell",
     "RegionCoverage": "engine.cell.camera_coverage",
     "RobotModels": "engine.cell.robot_models",
@@ -18,6 +19,7 @@ _HOMES = {
     "ToolKind": "engine.cell.tool_kind",
     "devices_of_cell": "engine.cell.device_details",
     "items_of_cell": "engine.cell.cell_items",
+    "model_names": "engine.cell.robot_models",
     "named_items": "engine.cell.cell_items",
     "tool_kinds": "engine.cell.robot_models",
 }

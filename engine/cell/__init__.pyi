@@ -5,7 +5,7 @@ from engine.cell.cell_connection import CellConnection
 from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_items
 from engine.cell.device_details import DeviceDetails, devices_of_cell
 from engine.cell.open_cell import OpenCell
-from engine.cell.robot_models import RobotModels, RobotSummary, tool_kinds
+from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
 from engine.cell.tool_kind import ToolKind
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "CellItem",
     "CellItems",
     "DeviceDetails",
+    "ModelNames",
     "OpenCell",
     "RegionCoverage",
     "RobotModels",
@@ -21,6 +22,7 @@ __all__ = [
     "ToolKind",
     "devices_of_cell",
     "items_of_cell",
+    "model_names",
     "named_items",
     "tool_kinds",
 ]

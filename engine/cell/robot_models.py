@@ -35,6 +35,13 @@ class RobotSummary(msgspec.Struct, frozen=True, kw_only=True):
     digital_inputs: int = 0
 
 
+class ModelNames(msgspec.Struct, frozen=True, kw_only=True):
+    """The models that a cell document may name without a folder of its own."""
+
+    robots: tuple[str, ...]
+    tools: tuple[str, ...]
+
+
 class RobotModels(Protocol):
     """The models and motion planners of an installed package."""
 
@@ -108,3 +115,11 @@ def tool_kinds() -> Mapping[str, ToolKind]:
     """Return the kinds of tools of the installed models by name; none without models, or when they fail to load."""
     models = robot_models()
     return models.tool_kinds() if models is not None else {}
+
+
+def model_names() -> ModelNames:
+    """Return the names of the installed models; none without models, or when they fail to load."""
+    models = robot_models()
+    return (
+        ModelNames(robots=(), tools=()) if models is None else ModelNames(robots=models.robots(), tools=models.tools())
+    )

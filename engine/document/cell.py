@@ -27,6 +27,7 @@ from engine.document.cell_modules import (
 )
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
+from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
@@ -223,7 +224,11 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     Raises:
         DocumentError: as `load_cell`.
     """
-    document = written = decode_document(source, CellDocument, refused=_REFUSED)
+    try:
+        document = written = decode_document(source, CellDocument, refused=_REFUSED)
+    except DocumentError:
+        require_kind(source, "cell")
+        raise
     modules: dict[str, Module] = {}
     if document.modules or document.connectors:
         _require_free_names(document, source)

@@ -10,6 +10,7 @@ from types import MappingProxyType
 import msgspec
 
 from engine.document.behavior import Behavior, BehaviorDocument
+from engine.document.document_kind import require_kind
 from engine.document.partial_behavior import read_partial_behavior
 from engine.document.structural_rules import require_structural_rules
 from engine.document.text.decoding import decode_document
@@ -166,7 +167,12 @@ class _Reading:
         return behavior
 
     def build(self, source: DocumentSource, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        behavior = Behavior(document=decode_document(source, BehaviorDocument), file=file, source=source)
+        try:
+            document = decode_document(source, BehaviorDocument)
+        except DocumentError:
+            require_kind(source, "behavior")
+            raise
+        behavior = Behavior(document=document, file=file, source=source)
         require_structural_rules(behavior)
         return self._complete(behavior, file, chain)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import re
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -16,13 +17,23 @@ from engine.cell.remote_cell import connect_remote_cell, remote_cell_connection
 from engine.cell.robot_models import RobotModels, robot_models
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import load_cell
-from engine.errors import CellError
+from engine.errors import CellError, FlexcellError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.messages import Vector3
 
+_NEW_CELL = """\
+flexcell: 1
+cell: {name}
+
+world: {{kind: mujoco}}
+
+fixtures:
+  floor: {{shape: box, size_m: [3, 3, 0.04], at: {{xyz: [0, 0, -0.02]}}, color: "#d8d5cf"}}
+"""
+
 app = typer.Typer(
-    help="Show or restore the connection to the devices of a running server's cell; show what the cameras of a cell see;"
-    " export its scene.",
+    help="Show or restore the connection to the devices of a running server's cell; show what the cameras of a cell"
+    " see; export its scene; begin a new one.",
     no_args_is_help=True,
 )
 
@@ -61,6 +72,29 @@ def coverage(
         sys.stdout.write(f"{_region_line(region)}\n")
     if any(100.0 * region.seen < fail_under for region in found.regions or (found.whole,)):
         raise typer.Exit(ExitCode.OTHER_OUTCOME)
+
+
+@app.command("new")
+def new(file: Annotated[Path, typer.Argument(help="The document to write.", show_default=False)]) -> None:
+    """Write the document of a cell with a floor and nothing else, to build the cell from in the browser.
+
+    `flexcell cell new cells/press.yaml`, then `flexcell serve --cell cells/press.yaml`
+    """
+    if file.suffix not in (".yaml", ".yml"):
+        raise FlexcellError(f"{file} is no YAML file", hint="give a name that ends in .yaml")
+    name = re.sub(r"[^a-z0-9_]+", "_", file.stem.lower()).strip("_")
+    if not name[:1].isalpha():
+        name = f"cell_{name}".rstrip("_")
+    text = _NEW_CELL.format(name=name)
+    if file.exists():
+        raise FlexcellError(f"{file} exists already", hint="choose another name, or edit that file")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("x", encoding="utf-8") as written:
+            written.write(text)
+    except OSError as error:
+        raise FlexcellError(f"{file} cannot be written: {error.strerror}", hint="choose another folder") from error
+    sys.stdout.write(f"{file}\nBuild it in the browser: flexcell serve --cell {file}, then press *Edit the cell*.\n")
 
 
 @app.command("export")

@@ -28,7 +28,8 @@ from engine.cli.exit_code import ExitCode
 from engine.cli.output.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
-from engine.document.entries_document import SECTIONS, load_entries
+from engine.document.document_kind import kind_of
+from engine.document.entries_document import load_entries
 from engine.document.equipment.equipment_file import load_equipment
 from engine.document.module_document import load_module
 from engine.document.project_file import PROJECT_FILE, load_project
@@ -39,19 +40,6 @@ from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import load_states
 
 TargetLevel = Literal["warning", "error", "off"]
-_KINDS = (
-    ("root", "behavior"),
-    ("outcomes", "behavior"),
-    # A sweep may name the cell and the faults of its runs.
-    ("behavior", "sweep"),
-    ("cell", "cell"),
-    ("module", "module"),
-    ("equipment", "equipment"),
-    ("pin_configs", "equipment"),
-    *((key, "entries") for key in SECTIONS.values()),
-    ("faults", "faults"),
-    ("substitutes", "substitutes"),
-)
 
 
 def check(
@@ -252,9 +240,9 @@ def document_kind(file: Path) -> str:
     """
     recovered = load_recovering(file)
     data = recovered.source.data if recovered.source is not None else None
-    for key, kind in _KINDS:
-        if isinstance(data, dict) and key in data:
-            return kind
+    kind = kind_of(data)
+    if kind is not None:
+        return kind
     if recovered.mistakes:
         raise recovered.mistakes[0]
     raise DocumentError(
@@ -266,7 +254,12 @@ def document_kind(file: Path) -> str:
 
 def _summary(files: int, findings: list[Finding]) -> str:
     errors = sum(finding.severity == "error" for finding in findings)
-    lines = [f"{files} checked: {errors} errors, {len(findings) - errors} warnings"]
+    warnings = len(findings) - errors
+    lines = [f"{files} checked: {_counted(errors, 'error')}, {_counted(warnings, 'warning')}"]
     if findings:
         lines.append(f"to explain a finding: flexcell check --explain {findings[0].code}")
     return "\n".join(lines) + "\n"
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

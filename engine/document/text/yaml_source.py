@@ -230,6 +230,31 @@ def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
         parser.dispose()
 
 
+# What libyaml says, and what it means to whoever wrote the document, with what to do.
+_IN_OUR_WORDS = {
+    "did not find expected node content": (
+        "a value is missing before this place",
+        "close what is open with `]` or `}`, or put the text in quotes",
+    ),
+    "did not find expected ',' or ']'": ("unmatched bracket", "close it with `]`, or put the text in quotes"),
+    "did not find expected key": (
+        "no key is here, where one must be",
+        "compare the indentation with the lines above, and close what is open there",
+    ),
+    "did not find expected '-' indicator": (
+        "no `-` is here, where the list goes on",
+        "compare the indentation with the items above",
+    ),
+    "could not find expected ':'": ("a `:` is missing after a key", "write `key: value`"),
+    "found character that cannot start any token": ("no value can begin with this character", "put the text in quotes"),
+    "found unexpected end of stream": ("unexpected end of the document in a text", "close the quotes"),
+    "block sequence entries are not allowed in this context": (
+        "a list begins beside something else",
+        "begin it on a line of its own",
+    ),
+}
+
+
 def _syntax_error(error: yaml.MarkedYAMLError, file: str, text: str) -> LineMistake:
     mark = cast("_Mark | None", error.problem_mark or error.context_mark)
     line, column = (mark.line, mark.column) if mark is not None else (0, 0)
@@ -242,6 +267,8 @@ def _syntax_error(error: yaml.MarkedYAMLError, file: str, text: str) -> LineMist
         message, hint = "unmatched brace", "put text with `${…}` in quotes"
     elif "mapping values are not allowed" in message:
         message, hint = "a second `:` on this line", "put the text in quotes"
+    else:
+        message, hint = _IN_OUR_WORDS.get(message, (message, hint))
     refusal = LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
     # An unclosed block is detected only where another one begins.
     begins = error.context_mark if (error.context or "").startswith(_OPENING) else None

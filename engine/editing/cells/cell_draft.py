@@ -20,7 +20,7 @@ from engine.messages import Pose
 
 CellDocumentKind = Literal["cell", "module"]
 SECTIONS: dict[CellDocumentKind, tuple[CellSection, ...]] = {
-    "cell": ("fixtures", "parts", "cameras", "frames", "connectors", "modules"),
+    "cell": ("robots", "fixtures", "parts", "cameras", "frames", "connectors", "modules"),
     "module": ("fixtures", "parts", "cameras", "frames"),
 }
 

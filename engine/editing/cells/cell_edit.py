@@ -9,7 +9,7 @@ from msgspec import Meta
 
 from engine.document.placement import Name
 
-CellSection = Literal["fixtures", "parts", "cameras", "frames", "connectors", "modules"]
+CellSection = Literal["robots", "fixtures", "parts", "cameras", "frames", "connectors", "modules"]
 WrittenName = Annotated[str, Meta(min_length=1, max_length=200, description="A name as it is in the document")]
 FieldStep = Annotated[str, Meta(min_length=1, max_length=64)]
 FieldPath = Annotated[

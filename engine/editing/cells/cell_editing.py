@@ -30,7 +30,7 @@ _ORDER = (
     *("parts", "frames", "cameras"),
 )
 # What is nothing when it is empty; `detect: {}` says something.
-_NOTHING_WHEN_EMPTY = frozenset(("at", "jitter", "base"))
+_NOTHING_WHEN_EMPTY = frozenset(("at", "jitter", "base", "gripper"))
 
 
 @dataclass(frozen=True, kw_only=True)

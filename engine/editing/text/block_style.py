@@ -10,6 +10,8 @@ from engine.document.nodes.node_spec import TREE_KINDS
 from engine.editing.text.syntax import Collection
 
 _NODES = frozenset((*KINDS, *TREE_KINDS))
+# Each item of a cell has one of these.
+_OF_ITEMS = frozenset(("at", "base", "model", "module"))
 _OF_NOTES = frozenset(CanvasNote.__struct_fields__)
 
 
@@ -34,6 +36,14 @@ def holds_notes(value: object) -> bool:
     """Return whether a value holds notes of the canvas, of which each has a line of its own."""
     return isinstance(value, dict) and any(
         isinstance(each, dict) and (each.keys() == _OF_NOTES or holds_notes(cast("object", each)))
+        for each in cast("dict[str, object]", value).values()
+    )
+
+
+def holds_items(value: object) -> bool:
+    """Return whether a value is a section of a cell document, of which each item has a line of its own."""
+    return isinstance(value, dict) and all(
+        isinstance(each, dict) and not _OF_ITEMS.isdisjoint(cast("dict[str, object]", each))
         for each in cast("dict[str, object]", value).values()
     )
 

@@ -13,7 +13,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
-from engine.editing.text.block_style import collections_in_flow, had_node, has_node, holds_notes, lists_mappings
+from engine.editing.text.block_style import (
+    collections_in_flow,
+    had_node,
+    has_node,
+    holds_items,
+    holds_notes,
+    lists_mappings,
+)
 from engine.editing.text.changed_data import changed_collections, is_unchanged
 from engine.editing.text.indentation import indent_after, indent_text
 from engine.editing.text.node_matching import EntryMatch, is_same_value, match_entries
@@ -338,7 +345,8 @@ class TextRewriter:
             text = self._fresh_flow(value, place)
             fits = place.column + len(text) <= MAX_COLUMNS and "\n" not in text
             lines = has_node(value) or lists_mappings(value) or holds_notes(value)
-            if place.flow or (fits and (place.beside is True or not lines) and not self._brings_comments(value)):
+            joins = (place.beside is True or not lines) and not holds_items(value)
+            if place.flow or (fits and joins and not self._brings_comments(value)):
                 return RenderedText(text)
         source = self.sources.get(id(value))
         beside = collections_in_flow(source) if source is not None and had_node(source) else None

@@ -47,3 +47,11 @@ async def test_a_viewer_reads_the_items_with_their_lines_and_topics(serve: Serve
         "line": 5,
         "file": "",
     }
+
+
+async def test_an_editor_of_the_cell_reads_which_models_there_are(serve: Serve) -> None:
+    async with serve(FakeBackend()) as served:
+        headers = {"Authorization": f"Bearer {served.access.viewer}"}
+        body = (await served.http.get("/api/v1/cell/models", headers=headers)).json()
+    assert {"panda", "ur10", "irb4600"} <= set(body["robots"])
+    assert {"panda_hand", "magnet"} <= set(body["tools"])

@@ -9,6 +9,7 @@ import type {
   CellDraft,
   CellEditAnswer,
   CellEditsBody,
+  ModelNames,
   ReferringBehavior,
   SaveResultBody,
 } from './types'
@@ -33,6 +34,11 @@ export function cellDocumentsQuery(mayEdit: boolean) {
     queryFn: () => call<readonly CellDocumentName[]>('/cell_documents'),
     enabled: mayEdit,
   })
+}
+
+/** The models of robots and tools that a cell may name. */
+export function modelNamesQuery(isEdited: boolean) {
+  return queryOptions({ queryKey: queryKeys.cellModels, queryFn: () => call<ModelNames>('/cell/models'), enabled: isEdited })
 }
 
 /** The saved behaviors that name an item of the open cell; asked for where there is a name. */

@@ -12,6 +12,7 @@ export const queryKeys = {
   cellConnection: ['cell connection'],
   cellItems: ['cell items'],
   cellDevices: ['cell devices'],
+  cellModels: ['cell models'],
   cellDocuments: ['cell documents'],
   namingBehaviors: (name: string) => ['naming behaviors', name] as const,
   names: (text: string) => ['names', text] as const,

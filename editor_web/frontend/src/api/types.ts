@@ -41,7 +41,7 @@ export interface AdaptationRequest {
 /** Add an item at the end of a section, which is written if the document has none. */
 export interface AddCellItem {
   readonly edit: "add_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly value: Dict<unknown>
 }
@@ -840,7 +840,7 @@ export interface DraftBody {
 
 /** An item of a document as written, with its first and last line, from 1. */
 export interface DraftItem {
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly line: number
   readonly end_line: number
@@ -1643,6 +1643,12 @@ export interface MessageReceived {
   readonly message: unknown
 }
 
+/** The models that a cell document may name without a folder of its own. */
+export interface ModelNames {
+  readonly robots: readonly string[]
+  readonly tools: readonly string[]
+}
+
 /** The new id of a document; with `follow`, references to it are updated. */
 export interface MoveBody {
   readonly id: string
@@ -2237,7 +2243,7 @@ export interface ReleaseStopBody {
 /** Remove an item that nothing else in the document names. */
 export interface RemoveCellItem {
   readonly edit: "remove_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
 }
 
@@ -2250,7 +2256,7 @@ export interface RemoveNodes {
 /** Rename an item, with all that names it in the document. */
 export interface RenameCellItem {
   readonly edit: "rename_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly new_name: string
 }
@@ -2556,7 +2562,7 @@ export interface SetCanvasNote {
 /** Set a field of an item; null removes it, so that its default applies. Of a list and of a mapping only what differs is written: the other values keep their spelling. */
 export interface SetCellField {
   readonly edit: "set_field"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts"
+  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly field: readonly string[]
   readonly value: unknown

@@ -5,14 +5,14 @@ import { useQueryClient } from '@tanstack/react-query'
 import { useMemo, useState } from 'react'
 import { Group, Panel as Pane } from 'react-resizable-panels'
 import { Refusal } from '../components/Refusal'
-import { cellDocumentsQuery } from '../api/cellDocuments'
+import { cellDocumentsQuery, modelNamesQuery } from '../api/cellDocuments'
 import { cellDevicesQuery, cellItemsQuery } from '../api/cellItems'
 import { useData } from '../api/data'
 import { useLive } from '../api/live'
 import { useAnswer } from '../api/queryClient'
 import { queryKeys } from '../api/queryKeys'
 import { hasCellView } from '../api/session'
-import type { CellDocumentName, CellStateFrame, SessionBody } from '../api/types'
+import type { CellDocumentName, CellStateFrame, ModelNames, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { lazyView } from '../components/lazyView'
 import { OpenedTabs } from '../components/OpenedTabs'
@@ -36,6 +36,7 @@ import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
 
 const CellText = lazyView(async () => (await import('../features/cellEditor/CellText')).CellText)
+const NO_MODELS: ModelNames = { robots: [], tools: [] }
 const NO_DOCUMENTS: readonly CellDocumentName[] = []
 
 interface CellPageProps {
@@ -66,7 +67,8 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
     return cellTree(draft ? itemsOfDraft(draft, cell?.items ?? []) : (cell?.items ?? []), shown)
   }, [cell, frames, draft])
   const folders = useMemo(() => documents.flatMap((each) => each.folder || []), [documents])
-  const surroundings = useMemo(() => draft && surroundingsOf(draft, folders), [draft, folders])
+  const { value: models = NO_MODELS } = useAnswer(modelNamesQuery(draft !== undefined))
+  const surroundings = useMemo(() => draft && surroundingsOf(draft, { folders, ...models }), [draft, folders, models])
   // What is selected comes to the front, each time that something is.
   const asked = useMemo(() => (item ? { tab: 'Details' } : undefined), [item])
   if (problem) return <Empty title="The cell cannot be read">{problem}</Empty>

@@ -22,7 +22,8 @@ import {
   type Section,
 } from './cellEditing'
 
-const AROUND = { frames: ['world', 'table'], connectors: ['dock'], folders: ['bin'] }
+const MODELS = { folders: ['bin'], robots: ['panda', 'ur10'], tools: ['panda_hand'] }
+const AROUND = { frames: ['world', 'table'], connectors: ['dock'], ...MODELS }
 const HALF_TURN = 1.5707963267948966
 
 function item(section: Section, name: string, value = {}, line = 1): DraftItem {
@@ -79,12 +80,27 @@ it('makes the edits of what was changed, and renames last', () => {
 
 it('offers what something may stand in, and connectors that are free', () => {
   const frames = { table: pose(0), world: pose(0), 'bin/slot': pose(1) }
-  expect(surroundingsOf(draft({ frames }), ['bin'])).toEqual({
+  expect(surroundingsOf(draft({ frames }), MODELS)).toEqual({
     frames: ['world', 'bin/slot', 'table'],
     connectors: ['dock'],
-    folders: ['bin'],
+    ...MODELS,
   })
-  expect(surroundingsOf(draft(), []).frames).toEqual(['world', 'bin', 'dock', 'port', 'table'])
+  expect(surroundingsOf(draft(), MODELS).frames).toEqual(['world', 'bin', 'dock', 'port', 'table'])
+})
+
+it('gives a robot a model, a tool or none, and a base', () => {
+  const arm = item('robots', 'arm', { model: 'panda', gripper: { model: 'panda_hand' } })
+  const fields = fieldsFor('robots', arm.value, AROUND)
+  expect(fields.map(({ label }) => label)).toEqual(['Model', 'Tool', 'Stands in', 'Position', 'Roll, pitch, yaw'])
+  const bare = withValue(withValue(arm.value, ['gripper', 'model'], undefined), ['base', 'xyz'], [1, 0, 0])
+  expect(editsBetween(arm, bare, 'arm', fields)).toEqual([
+    { edit: 'set_field', section: 'robots', name: 'arm', field: ['gripper', 'model'], value: null },
+    { edit: 'set_field', section: 'robots', name: 'arm', field: ['base', 'xyz'], value: [1, 0, 0] },
+  ])
+  expect(shownItem('robots', bare, { world: pose(2) })?.pose.xyz).toEqual([3, 0, 0])
+  const robot = NEW_ITEMS.find(({ section }) => section === 'robots')
+  expect(robot?.value(AROUND)).toEqual({ model: 'panda', base: { xyz: [0, 0, 0] } })
+  expect(robot?.obstacle({ ...AROUND, robots: [] })).toBe('no models of robots are installed')
 })
 
 it('names new items, and says why a module cannot be added', () => {
@@ -121,15 +137,20 @@ it('shows the items of the draft with what the open cell has beside them', () =>
   const cell = [
     open('robots/left'),
     { ...open('robots/left/gripper', 'robots/left'), kind: 'tool' as const },
+    open('people/anna'),
     open('fixtures/table'),
     open('fixtures/gone'),
     open('fixtures/bin/tray', 'modules/bin'),
     open('fixtures/vice/jaws', 'modules/vice'),
   ]
-  const shown = itemsOfDraft(draft(), cell).map(({ path }) => path)
-  expect(shown).toEqual([
-    'robots/left',
-    'robots/left/gripper',
+  const right = item('robots', 'right', { model: 'ur10', gripper: { model: 'robotiq_2f85' } })
+  const shown = itemsOfDraft(draft({ items: [...draft().items, right] }), cell)
+  expect(shown.filter(({ path }) => path.startsWith('robots'))).toMatchObject([
+    { path: 'robots/right', kind: 'robot', model: 'ur10' },
+    { path: 'robots/right/gripper', kind: 'tool', model: 'robotiq_2f85', owner: 'robots/right' },
+  ])
+  expect(itemsOfDraft(draft(), cell).map(({ path }) => path)).toEqual([
+    'people/anna',
     'fixtures/bin/tray',
     'fixtures/table',
     'connectors/dock',

@@ -16,7 +16,8 @@ interface FieldBase {
 }
 
 export type Field =
-  | (FieldBase & { readonly kind: 'choice'; readonly choices: readonly string[] })
+  /** The choice of `none` writes nothing. */
+  | (FieldBase & { readonly kind: 'choice'; readonly choices: readonly string[]; readonly none?: string })
   | (FieldBase & {
       readonly kind: 'numbers'
       readonly names: readonly string[]
@@ -34,6 +35,9 @@ export interface Surroundings {
   readonly connectors: readonly string[]
   /** The folders of modules, as the document writes them. */
   readonly folders: readonly string[]
+  /** The models of robots, and of tools. */
+  readonly robots: readonly string[]
+  readonly tools: readonly string[]
 }
 
 const XYZ = ['x', 'y', 'z'] as const
@@ -49,6 +53,7 @@ const SHAPES: Readonly<Record<'fixtures' | 'parts', readonly string[]>> = {
 }
 const ORIGIN = [0, 0, 0] as const
 const FIRST_SIZE_M = 0.1
+const NO_TOOL = 'no tool'
 
 /** The names of the lengths of a shape. */
 export function sizeNames(shape: unknown): readonly string[] {
@@ -56,11 +61,20 @@ export function sizeNames(shape: unknown): readonly string[] {
 }
 
 /** The fields of an item, whose value tells its shape. */
-export function fieldsFor(section: Section, value: Dict<unknown>, { frames, connectors, folders }: Surroundings): readonly Field[] {
+export function fieldsFor(section: Section, value: Dict<unknown>, around: Surroundings): readonly Field[] {
+  const { frames, connectors, folders } = around
   const place = (label: string, path: readonly string[]): Field => ({ kind: 'choice', path, label, usual: WORLD, choices: frames })
   const position = (label: string, ...path: string[]): Field => numbers(label, path, XYZ, 'm', ORIGIN)
   const turn = (...path: string[]): Field => ({ ...numbers('Roll, pitch, yaw', path, ['r', 'p', 'y'], '°', ORIGIN), isAngle: true })
   switch (section) {
+    case 'robots':
+      return [
+        { kind: 'choice', path: ['model'], label: 'Model', usual: '', choices: around.robots },
+        { kind: 'choice', path: ['gripper', 'model'], label: 'Tool', usual: NO_TOOL, choices: [NO_TOOL, ...around.tools], none: NO_TOOL },
+        place('Stands in', ['base', 'frame']),
+        position('Position', 'base', 'xyz'),
+        turn('base', 'rpy'),
+      ]
     case 'fixtures':
     case 'parts': {
       const shape = lookup(value, 'shape')
@@ -192,6 +206,13 @@ const NEVER = () => undefined
 const onFloor = { at: { xyz: [0, 0, 0.05] } }
 
 export const NEW_ITEMS: readonly NewItem[] = [
+  {
+    label: 'Robot',
+    section: 'robots',
+    stem: 'robot',
+    value: ({ robots }) => ({ model: robots[0] ?? '', base: { xyz: [0, 0, 0] } }),
+    obstacle: ({ robots }) => (robots.length === 0 ? 'no models of robots are installed' : undefined),
+  },
   { label: 'Box', section: 'fixtures', stem: 'box', value: () => ({ shape: 'box', size_m: [0.1, 0.1, 0.1], ...onFloor }), obstacle: NEVER },
   {
     label: 'Cylinder',
@@ -231,9 +252,12 @@ export const NEW_ITEMS: readonly NewItem[] = [
   },
 ]
 
+/** A module has none of these. */
+const OF_CELLS: ReadonlySet<Section> = new Set(['robots', 'connectors', 'modules'])
+
 /** What can be added to a document of this kind. */
 export function newItemsOf(kind: CellDraft['kind']): readonly NewItem[] {
-  return kind === 'cell' ? NEW_ITEMS : NEW_ITEMS.filter(({ section }) => section !== 'connectors' && section !== 'modules')
+  return kind === 'cell' ? NEW_ITEMS : NEW_ITEMS.filter(({ section }) => !OF_CELLS.has(section))
 }
 
 /** `box_1`, or the next number that is free. */
@@ -241,8 +265,11 @@ export function freeName(stem: string, taken: ReadonlySet<string>): string {
   for (let at = 1; ; at += 1) if (!taken.has(`${stem}_${at}`)) return `${stem}_${at}`
 }
 
-/** What the items of a draft can be related to; `folders` are those of all modules. */
-export function surroundingsOf({ items, frames, kind }: CellDraft, folders: readonly string[]): Surroundings {
+/** What the items of a draft can be related to; `folders` are those of all modules, beside the installed models. */
+export function surroundingsOf(
+  { items, frames, kind }: CellDraft,
+  { folders, robots, tools }: Pick<Surroundings, 'folders' | 'robots' | 'tools'>,
+): Surroundings {
   const known = Object.keys(frames)
   const carriers = items.filter(
     ({ section }) => section === 'frames' || section === 'fixtures' || section === 'connectors' || section === 'modules',
@@ -251,7 +278,7 @@ export function surroundingsOf({ items, frames, kind }: CellDraft, folders: read
   const all = known.length > 0 ? known : [WORLD, ...carriers.map(({ name }) => name)]
   const used = new Set(items.filter(({ section }) => section === 'modules').map(({ value }) => lookup(value, 'connector')))
   const connectors = items.filter(({ section, name }) => section === 'connectors' && !used.has(name)).map(({ name }) => name)
-  return { frames: kind === 'module' ? all : all.toSorted(byWorldFirst), connectors, folders }
+  return { frames: kind === 'module' ? all : all.toSorted(byWorldFirst), connectors, folders, robots, tools }
 }
 
 function byWorldFirst(a: string, b: string): number {
@@ -273,6 +300,7 @@ export function itemAtLine(draft: CellDraft, line: number): DraftItem | undefine
 }
 
 const KINDS: Readonly<Record<Section, CellItem['kind']>> = {
+  robots: 'robot',
   fixtures: 'fixture',
   parts: 'part',
   cameras: 'camera',
@@ -286,23 +314,19 @@ export function itemsOfDraft(draft: CellDraft, open: readonly CellItem[]): reado
   const modules = new Set(draft.items.filter(({ section }) => section === 'modules').map(({ name }) => `modules/${name}`))
   const editable = new Set<string>(Object.keys(KINDS))
   const beside =
-    draft.kind === 'module'
-      ? []
-      : open.filter((each) => (each.owner ? modules.has(each.owner) || each.kind === 'tool' : !editable.has(firstOfPath(each.path))))
-  const own = draft.items.map(({ section, name, line, value }): CellItem => {
-    const path = `${section}/${name}`
-    const known = open.find((each) => each.path === path)
-    return {
-      path,
-      kind: KINDS[section],
-      name,
-      model: modelOf(section, value),
-      owner: '',
-      topics: known?.topics ?? [],
-      text: '',
-      line,
-      file: '',
+    draft.kind === 'module' ? [] : open.filter((each) => (each.owner ? modules.has(each.owner) : !editable.has(firstOfPath(each.path))))
+  const own = draft.items.flatMap((item): readonly CellItem[] => {
+    const { section, name, line, value } = item
+    const drawn = (path: string, kind: CellItem['kind'], model: string, owner: string): CellItem => {
+      const topics = open.find((each) => each.path === path)?.topics ?? []
+      return { path, kind, name, model, owner, topics, text: '', line, file: '' }
     }
+    const path = `${section}/${name}`
+    const tool = section === 'robots' ? valueAt(value, ['gripper', 'model']) : undefined
+    return [
+      drawn(path, KINDS[section], modelOf(section, value), ''),
+      ...(typeof tool === 'string' ? [drawn(`${path}/gripper`, 'tool', tool, path)] : []),
+    ]
   })
   return [...beside, ...own]
 }
@@ -318,6 +342,8 @@ function modelOf(section: Section, value: Dict<unknown>): string {
       return of('shape', '')
     case 'cameras':
       return of('driver', 'sim')
+    case 'robots':
+      return of('model', '')
     case 'modules':
       return of('module', '')
     default:
@@ -335,7 +361,7 @@ export interface ShownItem {
 /** Where an item with this value is in the world; undefined where nobody can tell. */
 export function shownItem(section: Section, value: Dict<unknown>, frames: CellDraft['frames']): ShownItem | undefined {
   const isCamera = section === 'cameras'
-  const at = isCamera ? value : fieldsOf(lookup(value, 'at'))
+  const at = isCamera ? value : fieldsOf(lookup(value, placeKey(section)))
   const base = lookup(frames, frameOf(section, value))
   if (!base) return undefined
   const xyz: Vector = vectorFrom(lookup(at, isCamera ? 'at' : 'xyz')) ?? [0, 0, 0]
@@ -350,9 +376,15 @@ export function shownItem(section: Section, value: Dict<unknown>, frames: CellDr
   return { pose, shape: shape === 'box' || shape === 'cylinder' || shape === 'sphere' ? shape : undefined, size }
 }
 
+/** The field in which an item has its place. */
+export function placeKey(section: Section): 'at' | 'base' {
+  return section === 'robots' ? 'base' : 'at'
+}
+
 /** The name of what an item stands in. */
 export function frameOf(section: Section, value: Dict<unknown>): string {
   const paths: Readonly<Record<Section, readonly string[]>> = {
+    robots: ['base', 'frame'],
     fixtures: ['at', 'frame'],
     parts: ['at', 'frame'],
     cameras: ['frame'],

@@ -1,6 +1,6 @@
 /** An item that is dragged in the 3D view: the numbers of its form, snapped to steps and to connectors. Pure. */
 import type { CellDraft, DraftItem } from '../api/types'
-import { frameOf, valueAt, withValue, type Section } from './cellEditing'
+import { frameOf, placeKey, valueAt, withValue, type Section } from './cellEditing'
 import { lookup, type Dict } from './dict'
 import { distance, roundedTo, seenFrom, type PlacedPose, type Vector } from './poses'
 import { rollPitchYaw } from './teaching'
@@ -45,11 +45,12 @@ export function draggedTo(
   const { m, rad } = DRAG_STEPS[steps]
   const stepped = (values: Vector, step: number): Vector =>
     connector ? roundedTo(values, 6) : roundedTo([stepTo(values[0], step), stepTo(values[1], step), stepTo(values[2], step)] as const, 6)
-  const moved = withValue(value, section === 'cameras' ? ['at'] : ['at', 'xyz'], stepped(seen.xyz, m))
+  const moved = withValue(value, section === 'cameras' ? ['at'] : [placeKey(section), 'xyz'], stepped(seen.xyz, m))
   if (!canTurn(section)) return moved
   const turn = stepped(rollPitchYaw(seen.xyzw), rad)
-  const isWritten = valueAt(value, ['at', 'rpy']) !== undefined
-  return isWritten || turn.some((each) => each !== 0) ? withValue(moved, ['at', 'rpy'], turn) : moved
+  const path = [placeKey(section), 'rpy']
+  const isWritten = valueAt(value, path) !== undefined
+  return isWritten || turn.some((each) => each !== 0) ? withValue(moved, path, turn) : moved
 }
 
 function stepTo(value: number, step: number): number {

@@ -78,7 +78,7 @@ def test_the_text_form_says_how_to_learn_more(tmp_path: Path) -> None:
     (tmp_path / "bad.yaml").write_text(GOOD.replace("flow.Wait", "flow.Wiat"), encoding="utf-8")
     said = flexcell("check", "bad.yaml", cwd=tmp_path)
     assert said.err.splitlines() == [
-        "1 checked: 1 errors, 0 warnings",
+        "1 checked: 1 error, 0 warnings",
         "to explain a finding: flexcell check --explain unknown-state",
     ]
     page = (Path(__file__).resolve().parents[4] / "docs" / "findings" / "unknown-state.md").read_text(encoding="utf-8")

@@ -107,6 +107,28 @@ def test_a_missing_section_is_written_in_its_place() -> None:
     assert "robots: {}   # none yet\n" in after
 
 
+def test_each_item_of_a_new_section_has_a_line() -> None:
+    arm: dict[str, object] = {"model": "panda", "base": {"xyz": [0, 0, 0]}}
+    before = "flexcell: 1\ncell: bare\nworld: {kind: mujoco}\n"
+    text = edited(AddCellItem(section="robots", name="left", value=arm), text=before)
+    text = edited(AddCellItem(section="robots", name="right", value=arm), text=text)
+    text = edited(AddCellItem(section="frames", name="slot", value={"at": {"xyz": [0, 0, 0]}}), text=text)
+    assert text == before + (
+        "robots:\n"
+        "  left: {model: panda, base: {xyz: [0, 0, 0]}}\n"
+        "  right: {model: panda, base: {xyz: [0, 0, 0]}}\n"
+        "frames:\n"
+        "  slot: {at: {xyz: [0, 0, 0]}}\n"
+    )
+
+
+def test_a_robot_gets_a_tool_and_loses_it() -> None:
+    text = "flexcell: 1\ncell: bare\nrobots:\n  arm: {model: panda}   # in front\n"
+    with_hand = edited(set_field("robots", "arm", "gripper", "model", value="panda_hand"), text=text)
+    assert "  arm: {model: panda, gripper: {model: panda_hand}}   # in front\n" in with_hand
+    assert edited(set_field("robots", "arm", "gripper", "model", value=None), text=with_hand) == text
+
+
 def test_the_last_item_leaves_an_empty_section_with_its_comment() -> None:
     text = "flexcell: 1\ncell: bare\nframes:   # of the hall\n  a: {}\n"
     after = edited(RemoveCellItem(section="frames", name="a"), text=text)

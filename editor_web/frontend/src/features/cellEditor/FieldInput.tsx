@@ -19,7 +19,7 @@ export function FieldInput({ field, value, onChange }: FieldInputProps) {
           label={field.label}
           value={now}
           data={[...new Set([...(field.choices.includes(now) ? [] : [now]), ...field.choices])]}
-          onChange={(event) => onChange(event.currentTarget.value)}
+          onChange={(event) => onChange(event.currentTarget.value === field.none ? undefined : event.currentTarget.value)}
         />
       )
     }

@@ -18,6 +18,7 @@ const TABLE: DraftItem = {
   end_line: 3,
   value: { shape: 'box', size_m: [1, 0.8, 0.7], at: { xyz: [0.6, 0, 0.35] } },
 }
+const MODELS = { folders: ['bin'], robots: ['panda', 'ur10'], tools: ['panda_hand'] }
 const DRAFT: CellDraft = {
   text: 'a',
   hash: 'h',
@@ -46,7 +47,7 @@ beforeEach(async () => {
 })
 
 function form(onSelect = vi.fn()) {
-  const user = show(<ItemForm item={TABLE} surroundings={surroundingsOf(DRAFT, [])} onSelect={onSelect} />)
+  const user = show(<ItemForm item={TABLE} surroundings={surroundingsOf(DRAFT, MODELS)} onSelect={onSelect} />)
   const field = (label: string) => screen.getByLabelText(label)
   const write = async (label: string, text: string) => {
     await user.clear(field(label))
@@ -104,7 +105,7 @@ it('shows the findings of the item, and has the lengths of its shape', async () 
 
 it('writes a switch only where it is not as usual', async () => {
   const module: DraftItem = { ...TABLE, section: 'modules', name: 'bin', value: { module: 'bin', connector: 'dock' } }
-  const user = show(<ItemForm item={module} surroundings={surroundingsOf(DRAFT, ['bin'])} onSelect={vi.fn()} />)
+  const user = show(<ItemForm item={module} surroundings={surroundingsOf(DRAFT, MODELS)} onSelect={vi.fn()} />)
   const plugged = screen.getByRole('switch', { name: 'Plugged when the cell is opened' })
   expect(plugged).toBeChecked()
   await user.click(plugged)
@@ -125,7 +126,7 @@ it('deletes it, where nothing else names it', async () => {
 
 it('adds an item by a free name and selects it; a module needs a connector', async () => {
   const onSelect = vi.fn()
-  const user = show(<AddMenu surroundings={surroundingsOf(DRAFT, ['bin'])} taken={['cylinder_1']} onSelect={onSelect} />)
+  const user = show(<AddMenu surroundings={surroundingsOf(DRAFT, MODELS)} taken={['cylinder_1']} onSelect={onSelect} />)
   await user.click(screen.getByRole('button', { name: 'Add' }))
   const menu = await screen.findByRole('menu', { name: 'Add' })
   expect(within(menu).getByRole('menuitem', { name: 'Module' })).toBeDisabled()
