@@ -21,7 +21,18 @@ from engine.errors import DocumentError
 from engine.skills.modules import MODULES_TOPIC
 
 ItemKind = Literal[
-    "robot", "tool", "module", "fixture", "part", "frame", "camera", "person", "occupancy", "world", "store"
+    "robot",
+    "tool",
+    "equipment",
+    "module",
+    "fixture",
+    "part",
+    "frame",
+    "camera",
+    "person",
+    "occupancy",
+    "world",
+    "store",
 ]
 
 
@@ -145,6 +156,9 @@ def _items(cell: Cell) -> Iterator[CellItem]:
         yield CellItem(path=path, kind="robot", name=name, model=robot.model)
         if robot.gripper is not None:
             yield CellItem(path=f"{path}/gripper", kind="tool", name=name, model=robot.gripper.model, owner=path)
+    for name, equipment in document.equipment.items():
+        model = cell.pins[name].document.equipment if name in cell.pins else equipment.driver_kind
+        yield CellItem(path=f"equipment/{name}", kind="equipment", name=name, model=model)
 
     def owner(name: str) -> str:
         """Return the address of the module that something stands on; empty without one."""
@@ -184,7 +198,7 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith(f"{item.name}/") and not each.startswith(tools))
         case "tool":
             return tuple(each for each in known if each.startswith(tools))
-        case "camera":
+        case "camera" | "equipment":
             return tuple(each for each in known if each.startswith(f"{item.name}/"))
         case "part":
             return tuple(each for each in known if each == "cell/parts")

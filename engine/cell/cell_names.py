@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Literal
 
 from engine.cell.drivers.driver import Driver
 from engine.cell.drivers.driver_assignments import assigned_drivers
@@ -25,19 +25,22 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
-    "body", "obstacle", "scene_part", "module", "connector", "planner", "topic", "bus_topic", "skill",
+    "body", "obstacle", "scene_part", "module", "connector", "planner", "topic", "bus_topic", "skill", "controller",
+    "equipment",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
-`left/door`) belong to a robot, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame in which an
-arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`, `obstacle`
-and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell document
-declares. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
+`left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame
+in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`,
+`obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell
+document declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic,
+`skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
     "arm_frame": "frame for the poses of an arm",
     "body": "body",
     "scene_part": "part",
+    "controller": "robot or equipment",
 }
 _OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label"))
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
@@ -48,8 +51,8 @@ _WORLD, _OCCUPANCY = "world", "occupancy"
 class CellNames:
     """The names of a cell; a kind that is missing from `by_kind` is unknown, and any name of it is accepted.
 
-    `undescribed` are robots whose model cannot be read, and people, whose bodies only a world knows: names below
-    them, `left/…`, are accepted too.
+    `undescribed` are robots whose model cannot be read, equipment whose pins only its server knows, and people, whose
+    bodies only a world knows: names below them, `left/…`, are accepted too.
     """
 
     cell: str
@@ -84,7 +87,7 @@ class CellNames:
         """
         other = next((of for of in _others(kind) if name in self.by_kind.get(of, ())), None)
         if other is not None:
-            return f"`{name}` is a {_word(other)}"
+            return f"`{name}` is {'' if other == 'equipment' else 'a '}{_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
         if kind in _OWNED:
             owner, _, below = name.partition("/")
@@ -98,11 +101,11 @@ class CellNames:
 
     def beyond_driver(self, kind: CellNameKind, name: str, skills: Skills) -> str:
         """Return why the driver of a robot, or of its tool of this kind, cannot perform skills; empty if it can."""
-        driver = self.drivers.get(name if kind == "robot" else f"{name}/{kind}")
+        driver = self.drivers.get(name if kind in _OWN_SKILLS else f"{name}/{kind}")
         if driver is None:
             return ""
         # Skills of a tool are those of another device than the arm that carries it.
-        own = (skill for skill in skills if kind == (skill.capability if skill.capability in _TOOLS else "robot"))
+        own = (skill for skill in skills if _performs(kind, skill.capability))
         return next((reason for skill in own if (reason := driver.lacks_for_skill(skill.skill_name()))), "")
 
     def listed(self) -> dict[CellNameKind, tuple[str, ...]]:
@@ -110,10 +113,18 @@ class CellNames:
         return {kind: tuple(sorted(names)) for kind, names in self.by_kind.items()}
 
 
+def _performs(kind: CellNameKind, capability: str | None) -> bool:
+    """Return whether a device that a name of this kind means performs skills that need this capability."""
+    return kind == capability if capability in _TOOLS else kind in _OWN_SKILLS
+
+
+_OWN_SKILLS: Final = ("robot", "controller")
+"""Kinds of names of devices that perform the skills of a state themselves."""
 _TOOLS: Final = ("gripper", "hand")
 """Capabilities of tools, each with the name of its kind of tool."""
 _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
-    "robot": ("person", "part", "camera"),
+    "robot": ("equipment", "person", "part", "camera"),
+    "controller": ("person", "part", "camera"),
     "detector": ("camera",),
     "arm_frame": ("part", "link"),
     "part": ("obstacle",),
@@ -155,8 +166,10 @@ def cell_names(cell: Cell) -> CellNames:
     found: dict[CellNameKind, frozenset[str]] = {
         "robot": frozenset(robots),
         "link": links,
-        "output": frozenset(_outputs(robots, summaries)),
-        "input": frozenset(_inputs(robots, summaries)),
+        "equipment": frozenset(document.equipment),
+        "controller": frozenset((*robots, *document.equipment)),
+        "output": frozenset((*_outputs(robots, summaries), *_pins(cell, "outputs"))),
+        "input": frozenset((*_inputs(robots, summaries), *_pins(cell, "inputs"))),
         "part": parts,
         "person": people,
         "camera": frozenset(document.cameras),
@@ -180,6 +193,7 @@ def cell_names(cell: Cell) -> CellNames:
     if models is not None:
         found["planner"] = frozenset(models.planners())
     undescribed = frozenset(name for name, summary in summaries.items() if summary is None)
+    undescribed |= {name for name in document.equipment if name not in cell.pins}
     joints = {name: summary.joints for name, summary in summaries.items() if summary is not None}
     return CellNames(
         cell=cell.name, by_kind=found, undescribed=undescribed | people, joints=joints, drivers=_drivers(cell)
@@ -234,3 +248,10 @@ def _inputs(robots: Mapping[str, RobotSpec], summaries: Mapping[str, RobotSummar
         summary = summaries[name]
         yield from (f"{name}/{each}" for each in robot.inputs)
         yield from (f"{name}/{number}" for number in range(summary.digital_inputs if summary is not None else 0))
+
+
+def _pins(cell: Cell, which: Literal["outputs", "inputs"]) -> Iterator[str]:
+    """Yield the digital pins of the equipment by name: their numbers change with the configuration."""
+    for name, equipment in cell.pins.items():
+        pins = equipment.document.outputs if which == "outputs" else equipment.document.inputs
+        yield from (f"{name}/{pin}" for pin in pins)

@@ -19,7 +19,7 @@ class DeviceDetails(msgspec.Struct, frozen=True, kw_only=True):
     """One device for which the document of the cell names a driver.
 
     Attributes:
-        device: Its name in the document: `left`, `left/gripper`.
+        device: Its name in the document: `left`, `left/gripper`, `vice`.
         address: Its namespace on the bus, which names the kind of tool: `left/hand`.
         driver: The name of the driver.
         simulated: Whether the open cell simulates it instead.

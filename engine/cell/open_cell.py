@@ -69,6 +69,8 @@ class OpenCell:
         self.robots: Mapping[str, Robot] = {}
         self.tools: Mapping[str, Robot] = {}
         """The tools with a driver of their own, by bus namespace; all others are served by their arms."""
+        self.equipment: Mapping[str, Robot] = {}
+        """The equipment by name, simulated or with a driver."""
         self._world: World | None = None
         self._real_arms = TopicMeasures(())
         self._store_path = store_path
@@ -149,8 +151,9 @@ class OpenCell:
 
     @property
     def devices(self) -> tuple[Robot, ...]:
-        """Everything that a stop brings to rest: the robots, the tools with a driver of their own, then the world."""
-        return (*self.robots.values(), *self.tools.values(), *((self._world,) if self._world is not None else ()))
+        """Everything that a stop brings to rest: robots, tools with a driver of their own, equipment, the world."""
+        devices = (*self.robots.values(), *self.tools.values(), *self.equipment.values())
+        return (*devices, *((self._world,) if self._world is not None else ()))
 
     async def stop(self, *, ended: DeviceStopped | None = None) -> None:
         """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
@@ -212,7 +215,9 @@ class OpenCell:
             # Before the devices, which get new lines from the relay when all are reconnected.
             self._connections.follow(self.relay)
         world = await self._open_world(self.document)
-        await self._open_robots(self.document, world)
+        driven = {each.written_name: each for each in assigned_drivers(self.document)}
+        await self._open_equipment(self.document, driven)
+        await self._open_robots(self.document, world, driven)
         self._stack.push_async_callback(self._close_bus)
 
     async def _close_bus(self) -> None:
@@ -253,16 +258,28 @@ class OpenCell:
         self._connections.follow(world)
         return world
 
-    async def _open_robots(self, cell: Cell, world: World | None) -> None:
+    async def _open_equipment(self, cell: Cell, driven: Mapping[str, AssignedDriver]) -> None:
+        """Open the equipment, before the arms that may use it."""
+        opened: dict[str, Robot] = {}
+        for name in cell.document.equipment:
+            if name in driven:
+                opened[name] = self._driven(driven[name], opened)
+            else:
+                simulate: Callable[..., Robot] = load_factory(WORLDS, "equipment")
+                opened[name] = simulate(cell.pins[name].document, name=name)
+            await self._open_device(opened[name])
+            # At once: what was opened before an error is brought to rest too.
+            self.equipment = dict(opened)
+
+    async def _open_robots(self, cell: Cell, world: World | None, driven: Mapping[str, AssignedDriver]) -> None:
         simulated = {robot.name: robot for robot in world.robots()} if world is not None else {}
-        driven = {(each.robot, each.tool): each for each in assigned_drivers(cell)}
         robots: dict[str, Robot] = {}
         tools: dict[str, Robot] = {}
         for name, entry in cell.document.robots.items():
-            robots[name] = simulated[name] if entry.simulated else self._driven(driven[name, False], robots)
+            robots[name] = simulated[name] if entry.simulated else self._driven(driven[name], robots)
             await self._open_device(robots[name])
-            if (name, True) in driven:
-                tool = self._driven(driven[name, True], robots)
+            if f"{name}/gripper" in driven:
+                tool = self._driven(driven[f"{name}/gripper"], robots)
                 await self._open_device(tool)
                 tools[tool.name] = tool
         self.robots = robots
@@ -295,7 +312,7 @@ class OpenCell:
         except DocumentError:
             raise  # it has the position of the option
         except FlexcellError as error:
-            where = f"{'tool of ' if assigned.tool else ''}robot {assigned.robot} of {assigned.cell.file}"
+            where = f"{assigned.words} of {assigned.cell.file}"
             raise CellError(error.message, where=where, hint=error.hint) from error
         self.bus.explain_missing(name, driver.configured(options).lacks_for_skill)
         return device

@@ -28,6 +28,7 @@ from engine.document.cell_modules import (
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
 from engine.document.document_kind import require_kind
+from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name, Placement
@@ -87,6 +88,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     bus: BusLimits = BusLimits()
     world: MujocoWorld | None = None
     robots: dict[Name, RobotSpec] = {}
+    equipment: dict[Name, EquipmentSpec] = {}
     fixtures: dict[Name, Fixture] = {}
     parts: dict[Name, PartSpec] = {}
     cameras: dict[Name, DepthCamera] = {}
@@ -165,10 +167,11 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
 
     @property
     def real_devices(self) -> dict[str, str]:
-        """The devices that are not simulated, `left` or `left/gripper`, with the names of their drivers."""
+        """The devices that are not simulated, `left`, `left/gripper` or `vice`, with the names of their drivers."""
         arms = {name: robot.driver_kind for name, robot in self.robots.items() if not robot.simulated}
         tools = {name: robot.gripper.driver_kind for name, robot in self.robots.items() if robot.gripper is not None}
-        return arms | {f"{name}/gripper": kind for name, kind in tools.items() if kind}
+        equipment = {name: each.driver_kind for name, each in self.equipment.items() if not each.simulated}
+        return arms | {f"{name}/gripper": kind for name, kind in tools.items() if kind} | equipment
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,12 +179,14 @@ class Cell(DocumentFile[CellDocument]):
     """A cell document with its file, and with everything that stands on its modules.
 
     `modules` are their documents; `carried` says, by module, what of the cell document itself stands on it and is no
-    part: `robot arm`. `simulated` are devices whose drivers the simulation replaces, with these.
+    part: `robot arm`. `simulated` are devices whose drivers the simulation replaces, with these. `pins` are the
+    documents of its equipment.
     """
 
     modules: Mapping[str, Module] = field(default_factory=dict[str, Module])
     carried: Mapping[str, str] = field(default_factory=dict[str, str])
     simulated: Mapping[str, str] = field(default_factory=dict[str, str])
+    pins: Mapping[str, Equipment] = field(default_factory=dict[str, Equipment])
 
     @property
     def name(self) -> str:
@@ -190,8 +195,8 @@ class Cell(DocumentFile[CellDocument]):
 
     @property
     def content(self) -> tuple[object, ...]:
-        """The plain data of the document and of its modules, to compare it with another reading."""
-        return self.source.data, *(module.source.data for module in self.modules.values())
+        """The plain data of the document, its modules and its equipment, to compare it with another reading."""
+        return self.source.data, *(each.source.data for each in (*self.modules.values(), *self.pins.values()))
 
     @property
     def seed_file(self) -> Path | None:
@@ -242,7 +247,8 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
     carried = _items_on_modules(written, document, source, modules) if modules else {}
-    return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried)
+    pins = load_pins(document.equipment, source, folder=file.parent, taken=_namespaces(document))
+    return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried, pins=pins)
 
 
 def _items_on_modules(
@@ -377,8 +383,15 @@ def _require_detection_frames(document: CellDocument, source: DocumentSource) ->
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))
 
 
+def _namespaces(document: CellDocument) -> dict[str, str]:
+    """Return what has each namespace on the bus, without equipment."""
+    found = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
+    return found | dict.fromkeys(document.people, "person") | dict.fromkeys(_RESERVED_TOPICS, "name of flexcell itself")
+
+
 def _require_topics(document: CellDocument, source: DocumentSource) -> None:
     devices = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
+    devices |= dict.fromkeys(document.equipment, "equipment")
     for name, spec in document.topics.items():
         first = name.partition("/")[0]
         path: DataPath = ("topics", name)

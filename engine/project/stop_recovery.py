@@ -201,7 +201,7 @@ class StopRecovery:
         )
 
     def _real(self) -> Iterator[DeviceRecovery]:
-        for name, device in (*self._cell.robots.items(), *self._cell.tools.items()):
+        for name, device in (*self._cell.robots.items(), *self._cell.tools.items(), *self._cell.equipment.items()):
             state = self._latest(f"{name}/device")
             if isinstance(state, DeviceState):
                 is_lost = isinstance(device, Reconnectable) and bool(device.lost_reason)

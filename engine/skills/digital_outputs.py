@@ -15,18 +15,29 @@ On = Annotated[bool, msgspec.Meta(description="True to turn on, false to turn of
 
 
 class DigitalOutputs(Message, frozen=True, kw_only=True):
-    """All outputs by number; the latest value of `<arm>/digital_outputs`."""
+    """All outputs by number; the latest value of `<device>/digital_outputs`.
+
+    `names` are those of equipment, with their numbers. With a `problem` nothing is known, and there are no `values`.
+    """
 
     values: tuple[bool, ...]
+    names: dict[str, int] = {}
+    problem: str = ""
 
 
 class SetOutput(Service[SwitchResult], frozen=True, kw_only=True):
-    """Turn an output on or off."""
+    """Turn an output on or off, by its number at a robot, or by its name at equipment."""
 
     capability: ClassVar[Capability] = "outputs"
 
-    output: OutputNumber
+    output: OutputNumber | None = None
+    name: Annotated[str, msgspec.Meta(description="Name of an output of equipment")] = ""
     value: On
+
+    def __post_init__(self) -> None:
+        """Refuse none of both, and both."""
+        if (self.output is None) == (not self.name):
+            raise ValueError("give either `output` or `name`")
 
 
 class SetToolExchange(Service[SwitchResult], frozen=True, kw_only=True):

@@ -13,7 +13,9 @@ from engine.skills.digital_inputs import DigitalInputs, InputNumber
 InputRobot = Annotated[
     str,
     Meta(
-        min_length=1, description="The robot whose controller has the input", extra_json_schema={"cell_name": "robot"}
+        min_length=1,
+        description="The robot whose controller has the input, or the equipment",
+        extra_json_schema={"cell_name": "controller"},
     ),
 ]
 NumberOfInput = Annotated[InputNumber, Meta(extra_json_schema={"cell_name": "input", "of": "robot"})]
@@ -21,7 +23,7 @@ NameOfInput = Annotated[
     str,
     Meta(
         min_length=1,
-        description="Name that the cell gives to one of the inputs",
+        description="Name that the cell gives to one of the inputs, or name of a pin",
         extra_json_schema={"cell_name": "input", "of": "robot"},
     ),
 ]

@@ -1,4 +1,4 @@
-"""io.SetOutput: turns a digital output of a robot's controller on or off."""
+"""io.SetOutput: turns a digital output of a robot's controller or of equipment on or off."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
 
 
 class SetOutput(State, frozen=True, kw_only=True):
-    """Turn an output on or off, by its number (`output`) or by the device connected to it (`device`)."""
+    """Turn an output on or off, by its number (`output`) or by the device connected to it (`device`).
+
+    Outputs of equipment have names (`name`) instead.
+    """
 
     state_name: ClassVar[str] = "io.SetOutput"
     skills: ClassVar[Skills] = (outputs.SetOutput, SetToolExchange, SetGripper, SetLinearAxis)
@@ -27,8 +30,8 @@ class SetOutput(State, frozen=True, kw_only=True):
         str,
         Meta(
             min_length=1,
-            description="The robot whose controller has the output",
-            extra_json_schema={"cell_name": "robot"},
+            description="The robot whose controller has the output, or the equipment",
+            extra_json_schema={"cell_name": "controller"},
         ),
     ]
     value: On
@@ -40,18 +43,29 @@ class SetOutput(State, frozen=True, kw_only=True):
             extra_json_schema={"cell_name": "output", "of": "robot"},
         ),
     ] = None
+    name: (
+        Annotated[
+            str,
+            Meta(
+                min_length=1,
+                description="Name of a pin of the equipment",
+                extra_json_schema={"cell_name": "output", "of": "robot"},
+            ),
+        ]
+        | None
+    ) = None
 
     def __post_init__(self) -> None:
-        if (self.output is None) == (self.device is None):
-            raise ValueError("give either `output` or `device`")
+        if sum(each is not None for each in (self.output, self.device, self.name)) != 1:
+            raise ValueError("give one of `output`, `device` and `name`")
 
     def resources(self) -> tuple[str, ...]:
-        """Return the robot."""
+        """Return the robot or equipment."""
         return (self.robot,)
 
     async def run(self, ctx: Context) -> Outcome:
-        """Call the service of the robot."""
-        name = self.device or f"output {self.output}"
+        """Call the service of the robot or equipment."""
+        name = self.name or self.device or f"output {self.output}"
         what = f"{name} of {self.robot} was not turned {'on' if self.value else 'off'}"
         return await call_or_fail(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
 
@@ -64,4 +78,4 @@ class SetOutput(State, frozen=True, kw_only=True):
             case "linear_axis":
                 return SetLinearAxis(value=self.value)
             case None:
-                return outputs.SetOutput(output=self.output or 0, value=self.value)
+                return outputs.SetOutput(output=self.output, name=self.name or "", value=self.value)

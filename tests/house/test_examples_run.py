@@ -47,6 +47,7 @@ PARTS_OF_CELLS = (
     "topics:",
     "bus:",
     "unknown_bodies:",
+    "equipment:",
 )
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")

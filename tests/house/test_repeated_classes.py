@@ -25,6 +25,9 @@ MOST_SHARED = 0.75
 CARTESIAN = "the same about joints and about the tool; their values have other types"
 DIFFERENT_FACTS: Mapping[str, str] = {
     "DigitalOutputPin ~ PwmPin": "on or off, and a duty with a frequency; the kind tells them apart in the document",
+    "DigitalInputs ~ DigitalOutputs": "two topics of one controller; what is measured, and what is set",
+    "EquipmentOptions ~ GpiozeroPins": "where a server of equipment is; where the pigpiod behind it is",
+    "EquipmentOptions ~ ModbusPins": "where a server of equipment is; where the PLC behind it is",
     "GpiozeroPins ~ ModbusPins": "a pigpiod and a PLC; both are at an address",
     "FrankaLoad ~ Payload": "by columns and about the centre, as libfranka takes it",
     "AttachedPart ~ HeldPart": "of the scene to plan in, where no link is the tool link; the topic names the link",

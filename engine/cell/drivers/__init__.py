@@ -10,9 +10,11 @@ from engine.cell.drivers.device_report import DeviceReport, RoundTrip
 from engine.cell.drivers.driver import DrivenDevice, Driver, DriverOptions
 from engine.cell.drivers.driver_assignments import (
     AssignedDriver,
+    DeviceKind,
     assigned_drivers,
     digital_inputs,
     digital_outputs,
+    driven_kind,
     written_drivers,
 )
 from engine.cell.drivers.driver_registry import installed_driver, installed_drivers
@@ -21,6 +23,7 @@ from engine.cell.drivers.emulator_registry import Emulator, EmulatorOptions, Rea
 __all__ = [
     "AssignedDriver",
     "DeviceContext",
+    "DeviceKind",
     "DeviceReport",
     "DrivenDevice",
     "Driver",
@@ -33,6 +36,7 @@ __all__ = [
     "cell_schema_text",
     "digital_inputs",
     "digital_outputs",
+    "driven_kind",
     "emulator",
     "installed_driver",
     "installed_drivers",

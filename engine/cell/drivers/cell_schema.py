@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from engine.cell.drivers.driver import Driver
+from engine.cell.drivers.driver_assignments import DeviceKind, driven_kind
 from engine.cell.drivers.driver_registry import installed_drivers
 from engine.document.schema import one_line_texts, schema_texts
 
@@ -21,13 +22,14 @@ def cell_schema_text() -> str:
     )
     schema["$defs"] |= one_line_texts(definitions)
     options = dict(zip((driver.kind for driver in drivers), parts, strict=True))
-    for place, tool in (("RobotSpec", False), ("GripperSpec", True)):
+    places: dict[str, DeviceKind] = {"RobotSpec": "arm", "GripperSpec": "tool", "EquipmentSpec": "equipment"}
+    for place, device in places.items():
         entry = schema["$defs"][place]["properties"]["driver"]
-        offered = [options[driver.kind] for driver in drivers if (driver.drives != "arm") == tool]
+        offered = [options[driver.kind] for driver in drivers if driven_kind(driver) == device]
         entry["anyOf"] = [
             *(each for each in entry["anyOf"] if each.get("type") != "object"),
             *offered,
-            _another(driver for driver in drivers if (driver.drives != "arm") == tool),
+            _another(driver for driver in drivers if driven_kind(driver) == device),
         ]
     return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 

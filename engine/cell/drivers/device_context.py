@@ -17,7 +17,7 @@ class DeviceContext:
 
     Attributes:
         cell: The document of the cell.
-        robot: Name in it of the arm, or of the arm that has the tool.
+        robot: Name in it of the arm, of the arm that has the tool, or of the equipment.
         world: The open simulated world in which its body is mirrored; None without one.
         devices: Devices of the cell by name, those that are opened already; more of them come.
         new_stop_line: Makes the line on which the arm's process receives STOP; None without one.

@@ -44,7 +44,7 @@ class Driver:
 
     Attributes:
         kind: Its name, the tag of `options`.
-        drives: `arm`, or the kind of tool (`engine.cell.tool_kind`).
+        drives: `arm`, `equipment`, or the kind of tool (`engine.cell.tool_kind`).
         models: Names of the models that it can drive; empty if it can drive any.
         options: The keys of `driver:` in the cell document.
         capabilities: What it can do; a skill beyond them is refused with the reason.

@@ -1,39 +1,57 @@
-"""Which devices of a cell document have a driver of their own: arms, and tools also of simulated arms."""
+"""Which devices of a cell document have a driver of their own: arms, equipment, and tools also of simulated arms."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, get_args
 
 from engine.cell.drivers.driver import Driver, DriverOptions
 from engine.cell.drivers.driver_registry import driver_options, installed_driver
 from engine.document import Cell, DataPath
 from engine.errors import CellError, FlexcellError
 
+DeviceKind = Literal["arm", "tool", "equipment"]
+_WORDS: dict[DeviceKind, str] = {"arm": "an arm", "tool": "a tool", "equipment": "equipment"}
+_PLURALS: dict[DeviceKind, str] = {"arm": "arms", "tool": "tools", "equipment": "equipment"}
+
+
+def driven_kind(driver: Driver) -> DeviceKind:
+    """Return what a driver is for: a tool of whatever kind is a tool."""
+    return next((kind for kind in get_args(DeviceKind) if kind == driver.drives), "tool")
+
 
 @dataclass(frozen=True, kw_only=True)
 class AssignedDriver:
-    """One device with a driver; `path` leads to `driver` in the document, `model` is that of the arm or tool."""
+    """One device with a driver; `path` leads to `driver` in the document, `model` is that of the arm or tool.
+
+    `robot` is the name of the arm, of the arm that has the tool, or of the equipment, which has no model.
+    """
 
     cell: Cell
     robot: str
     kind: str
     model: str
     path: DataPath
-    tool: bool
+    device: DeviceKind
 
     @property
     def written_name(self) -> str:
-        """The name of the device in the document: `left`, or `left/gripper` of any tool."""
-        return f"{self.robot}/gripper" if self.tool else self.robot
+        """The name of the device in the document: `left`, `vice`, or `left/gripper` of any tool."""
+        return f"{self.robot}/gripper" if self.device == "tool" else self.robot
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages: `robot left`, `tool of robot left`, `equipment vice`."""
+        prefix = {"arm": "robot", "tool": "tool of robot", "equipment": "equipment"}[self.device]
+        return f"{prefix} {self.robot}"
 
     def driver(self) -> Driver:
         """Return the driver.
 
         Raises:
             RegistryError: there is none of this name, or it cannot be loaded.
-            CellError: it drives something else than this arm or tool.
+            CellError: it drives something else than this device.
         """
         driver = installed_driver(self.kind)
         problem = self._misfit(driver)
@@ -47,15 +65,13 @@ class AssignedDriver:
         return driver_options(driver, self.cell.source, self.path)
 
     def device_name(self, driver: Driver) -> str:
-        """Return the bus namespace of the device: `left`, or `left/gripper` of a tool."""
-        return f"{self.robot}/{driver.drives}" if self.tool else self.robot
+        """Return the bus namespace of the device: `left`, `vice`, or `left/gripper` of a tool."""
+        return f"{self.robot}/{driver.drives}" if self.device == "tool" else self.robot
 
     def _misfit(self, driver: Driver) -> str:
-        if self.tool == (driver.drives == "arm"):
-            what = "a tool" if self.tool else "an arm"
-            return (
-                f"the driver {driver.kind} drives {'arms' if driver.drives == 'arm' else 'tools'}, and this is {what}"
-            )
+        driven = driven_kind(driver)
+        if driven != self.device:
+            return f"the driver {driver.kind} drives {_PLURALS[driven]}, and this is {_WORDS[self.device]}"
         name = self.model.rstrip("/").rpartition("/")[2]
         if driver.models and name not in driver.models:
             return f"the driver {driver.kind} drives {', '.join(sorted(driver.models))}, not {self.model}"
@@ -73,11 +89,15 @@ def written_drivers(cell: Cell) -> Iterator[AssignedDriver]:
     for name, robot in cell.document.robots.items():
         if name in kinds:
             path: DataPath = ("robots", name, "driver")
-            yield AssignedDriver(cell=cell, robot=name, kind=kinds[name], model=robot.model, path=path, tool=False)
+            yield AssignedDriver(cell=cell, robot=name, kind=kinds[name], model=robot.model, path=path, device="arm")
         gripper, tool = robot.gripper, f"{name}/gripper"
         if gripper is not None and tool in kinds:
             path = ("robots", name, "gripper", "driver")
-            yield AssignedDriver(cell=cell, robot=name, kind=kinds[tool], model=gripper.model, path=path, tool=True)
+            yield AssignedDriver(cell=cell, robot=name, kind=kinds[tool], model=gripper.model, path=path, device="tool")
+    for name in cell.document.equipment:
+        if name in kinds:
+            path = ("equipment", name, "driver")
+            yield AssignedDriver(cell=cell, robot=name, kind=kinds[name], model="", path=path, device="equipment")
 
 
 def digital_outputs(cell: Cell, robot: str, *, of_model: int) -> int:

@@ -12,12 +12,14 @@ from engine.document.equipment.equipment_document import (
     SimulatedPins,
 )
 from engine.document.equipment.equipment_file import Equipment, load_equipment, read_equipment
+from engine.document.equipment.equipment_spec import EquipmentSpec, load_pins
 
 __all__ = [
     "DigitalInputPin",
     "DigitalOutputPin",
     "Equipment",
     "EquipmentDocument",
+    "EquipmentSpec",
     "GpiozeroPins",
     "ModbusPins",
     "Pin",
@@ -25,5 +27,6 @@ __all__ = [
     "PwmPin",
     "SimulatedPins",
     "load_equipment",
+    "load_pins",
     "read_equipment",
 ]

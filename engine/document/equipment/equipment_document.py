@@ -97,6 +97,18 @@ class EquipmentDocument(StrictModel, frozen=True, kw_only=True):
         return {name: pin.safe for name, pin in self.pins.items() if not isinstance(pin, DigitalInputPin)}
 
     @property
+    def inputs(self) -> dict[str, int]:
+        """The digital inputs by name, each with its number among them."""
+        names = (name for name, pin in self.pins.items() if isinstance(pin, DigitalInputPin))
+        return {name: number for number, name in enumerate(names)}
+
+    @property
+    def outputs(self) -> dict[str, int]:
+        """The digital outputs by name, each with its number among them; those with a duty are none."""
+        names = (name for name, pin in self.pins.items() if isinstance(pin, DigitalOutputPin))
+        return {name: number for number, name in enumerate(names)}
+
+    @property
     def stop_values(self) -> dict[str, bool | float]:
         """What STOP sets, by the name of the pin; those that keep their value are not in it."""
         return {

@@ -167,7 +167,9 @@ def thing_kind(cell: Cell, needs: str, name: str) -> str:
         return needs
     if "/" in name:
         return "link"
-    own = {"detector": "camera", "robot": "robot", **dict.fromkeys(tool_kinds(), "robot")}.get(needs)
+    own = {"detector": "camera", "robot": "robot", "controller": "robot", **dict.fromkeys(tool_kinds(), "robot")}.get(
+        needs
+    )
     return next((kind for kind, names in document.named_things.items() if name in names and own in (None, kind)), "")
 
 

@@ -9,10 +9,11 @@ from engine.document.cell import Cell
 
 
 def written_paths(cell: Cell) -> Iterator[str]:
-    """Yield the paths of models, calibrations and entries as a cell writes them; built-in models have none."""
+    """Yield the paths of all files as a cell writes them: built-in models have none."""
     store = cell.document.store
     if store is not None and store.seed is not None:
         yield store.seed
+    yield from (each.pins for each in cell.document.equipment.values() if each.pins is not None)
     yield from _models(cell)
 
 
@@ -22,7 +23,8 @@ def model_paths(cell: Cell) -> list[Path]:
 
 
 def model_files(cell: Cell) -> Iterator[Path]:
-    """Yield the calibrations of a cell and the files in its model folders."""
+    """Yield the calibrations and equipment documents of a cell, and the files in its model folders."""
+    yield from (equipment.file for equipment in cell.pins.values())
     for path in model_paths(cell):
         yield from (file for file in sorted(path.rglob("*")) if file.is_file()) if path.is_dir() else (path,)
 

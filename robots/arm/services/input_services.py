@@ -60,9 +60,13 @@ class InputServices:
 
     async def _set(self, request: SimulateInput) -> SwitchResult:
         assert self._simulate is not None
+        number = self._names.get(request.name) if request.input is None else request.input
+        if number is None:
+            known = ", ".join(self._names) or "none"
+            return SwitchResult(success=False, message=f"there is no input {request.name}; the cell names {known}")
         try:
-            self._simulate(request.input, on=request.value)
+            self._simulate(number, on=request.value)
         except RobotError as error:
             return SwitchResult(success=False, message=str(error))
         self.publish_changes()
-        return SwitchResult(success=True, message=f"input {request.input} is {'on' if request.value else 'off'}")
+        return SwitchResult(success=True, message=f"input {number} is {'on' if request.value else 'off'}")

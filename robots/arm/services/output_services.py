@@ -55,6 +55,8 @@ class OutputServices:
         self._publish()
 
     async def _set_output(self, request: SetOutput) -> SwitchResult:
+        if request.output is None:
+            return SwitchResult(success=False, message=f"the outputs of {self._name} have numbers, not names")
         return await self._set(request.output, f"output {request.output}", value=request.value)
 
     async def _set_tool_exchange(self, request: SetToolExchange) -> SwitchResult:

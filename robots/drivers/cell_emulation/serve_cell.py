@@ -43,7 +43,9 @@ class _Device:
         model = assigned.model.rstrip("/").rpartition("/")[2]
         options = chosen.options_for(assigned.options(driver), model=model)
         name = assigned.device_name(driver)
-        return _Device(name=name, robot=assigned.robot, is_tool=assigned.tool, emulator=chosen, options=options)
+        return _Device(
+            name=name, robot=assigned.robot, is_tool=assigned.device == "tool", emulator=chosen, options=options
+        )
 
 
 class EmulatedCell:
@@ -126,17 +128,18 @@ async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:
         FlexcellError: the cell has no device with a driver, one of them cannot be emulated, or cannot listen.
     """
     cell = load_cell(options.file)
-    assigned = tuple(assigned_drivers(cell))
+    # Equipment has its own server, which serves pins in memory too.
+    assigned = tuple(each for each in assigned_drivers(cell) if each.device != "equipment")
     if not assigned:
         raise FlexcellError("no device of this cell has a driver", where=options.file)
-    simulated = with_simulated_devices(cell, ("all",))
+    simulated = with_simulated_devices(cell, [each.written_name for each in assigned])
     seed = options.seed if options.seed >= 0 else None
     if has_franka(assigned):
         scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
         await serve_franka_cell(assigned, scene, options, ready)
         return
     switched = dict(_switched_tools(assigned))
-    devices = tuple(_Device.of(each) for each in assigned if not (each.tool and each.robot in switched))
+    devices = tuple(_Device.of(each) for each in assigned if not (each.device == "tool" and each.robot in switched))
     scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
     joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
     async with new_world(scene, virtual=True) as world:

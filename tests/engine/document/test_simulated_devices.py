@@ -27,6 +27,33 @@ def cell_of(folder: Path, text: str = TEXT) -> Cell:
     return load_cell(folder / "cell.yaml")
 
 
+PINS = """\
+flexcell: 1
+equipment: clamps
+backend: {kind: simulated}
+pins: {clamp: {kind: digital_output, pin: 17, safe: true}}
+"""
+WITH_EQUIPMENT = """\
+flexcell: 1
+cell: bench
+equipment:
+  vice: {driver: {kind: equipment, host: 10.0.0.2}, pins: clamps.yaml}
+  press: {driver: {kind: equipment, host: 10.0.0.3}}
+  feeder: {pins: clamps.yaml}
+"""
+
+
+def test_equipment_is_simulated_by_the_document_of_its_pins_and_needs_no_world(tmp_path: Path) -> None:
+    (tmp_path / "clamps.yaml").write_text(PINS, encoding="utf-8")
+    cell = cell_of(tmp_path, WITH_EQUIPMENT)
+    assert tuple(cell.document.real_devices) == ("vice", "press")
+    simulated = with_simulated_devices(cell, ("vice",))
+    assert (tuple(simulated.simulated), tuple(simulated.document.real_devices)) == (("vice",), ("press",))
+    with pytest.raises(DocumentError, match="equipment `press` cannot be simulated: nothing names its pins") as refused:
+        with_simulated_devices(cell, ("all",))
+    assert str(refused.value.where).endswith("cell.yaml:5:3")
+
+
 @pytest.mark.parametrize(
     ("names", "simulated", "driven"),
     [

@@ -25,6 +25,7 @@ DONE = SwitchResult(success=True, message="it is on")
         (SetOutput(robot="ur10", value=True, device="tool_exchange"), SetToolExchange(value=True)),
         (SetOutput(robot="ur10", value=True, device="gripper"), SetGripper(value=True)),
         (SetOutput(robot="ur10", value=False, device="linear_axis"), SetLinearAxis(value=False)),
+        (SetOutput(robot="ur10", value=True, name="valve"), outputs.SetOutput(name="valve", value=True)),
     ],
 )
 async def test_an_output_is_named_by_its_number_or_by_what_hangs_on_it(
@@ -49,8 +50,8 @@ async def test_an_output_that_is_not_switched_is_an_outcome_with_the_robot_s_mes
     ]
 
 
-@pytest.mark.parametrize("given", [{}, {"output": 1, "device": "gripper"}])
+@pytest.mark.parametrize("given", [{}, {"output": 1, "device": "gripper"}, {"output": 1, "name": "valve"}])
 def test_an_output_has_one_name(given: dict[str, Any]) -> None:
     """Not none, not two."""
-    with pytest.raises(ValueError, match="either `output` or `device`"):
+    with pytest.raises(ValueError, match="one of `output`, `device` and `name`"):
         SetOutput(robot="ur10", value=True, **given)

@@ -457,7 +457,7 @@ export interface CellFit {
 /** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1; `file` is the document of its module, empty for that of the cell. */
 export interface CellItem {
   readonly path: string
-  readonly kind: "camera" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
+  readonly kind: "camera" | "equipment" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
   readonly name: string
   readonly model: string
   readonly owner: string
@@ -664,7 +664,7 @@ export interface DemonstrationBody {
   readonly id?: string
 }
 
-/** One device for which the document of the cell names a driver. Attributes: device: Its name in the document: `left`, `left/gripper`. address: Its namespace on the bus, which names the kind of tool: `left/hand`. driver: The name of the driver. simulated: Whether the open cell simulates it instead. can: What the driver can do, in words. cannot: What it cannot do, in words, with the reason where there is one beside the device. proven: What it was tested against, and whether it ever ran on hardware. page: Path of its documentation. enabling: What enabling the device does at it. options: The options of the driver that are not at their defaults. schema: The JSON Schema of the options. problem: Why the driver or its options cannot be read; all else is empty then. */
+/** One device for which the document of the cell names a driver. Attributes: device: Its name in the document: `left`, `left/gripper`, `vice`. address: Its namespace on the bus, which names the kind of tool: `left/hand`. driver: The name of the driver. simulated: Whether the open cell simulates it instead. can: What the driver can do, in words. cannot: What it cannot do, in words, with the reason where there is one beside the device. proven: What it was tested against, and whether it ever ran on hardware. page: Path of its documentation. enabling: What enabling the device does at it. options: The options of the driver that are not at their defaults. schema: The JSON Schema of the options. problem: Why the driver or its options cannot be read; all else is empty then. */
 export interface DeviceDetails {
   readonly device: string
   readonly address: string

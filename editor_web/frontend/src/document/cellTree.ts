@@ -29,6 +29,7 @@ export interface CellNow {
 /** The group of each kind of item; a tool stands below the robot that carries it, a frame among all frames. */
 const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool' | 'frame'>, string>> = {
   robot: 'Robots',
+  equipment: 'Equipment',
   module: 'Modules',
   fixture: 'Fixtures',
   part: 'Parts',
@@ -134,10 +135,10 @@ export function holderOf(part: string, state: CellStateFrame | undefined): strin
   return Object.entries(state?.tools ?? {}).find(([, tool]) => tool?.held && tool.part === part)?.[0]
 }
 
-/** A robot or tool that is real, as its driver tells it; a tool is below its robot, by the name of its kind. */
+/** A robot, tool or equipment that is real, as its driver tells it; a tool is below its robot, by the name of its kind. */
 export function deviceOf(node: CellNode, state: CellStateFrame | undefined): DeviceNow | undefined {
   const name = node.item?.name ?? ''
-  if (node.kind === 'robot') return state && lookup(state.devices, name)
+  if (node.kind === 'robot' || node.kind === 'equipment') return state && lookup(state.devices, name)
   if (node.kind !== 'tool') return undefined
   return Object.entries(state?.devices ?? {}).find(([address]) => address.startsWith(`${name}/`))?.[1]
 }
@@ -158,6 +159,11 @@ export function stateWords(node: CellNode, now: CellNow): { readonly words: stri
       const tool = now.state && lookup(now.state.tools, name)
       if (!tool) return undefined
       return { words: tool.held ? `holds ${tool.part === '?' || !tool.part ? 'a part' : tool.part}` : 'holds nothing', look: 'idle' }
+    }
+    case 'equipment': {
+      const device = deviceOf(node, now.state)
+      if (!device) return undefined
+      return device.state.enabled ? { words: 'enabled', look: 'idle' } : deviceMode(device.state)
     }
     case 'part': {
       const holder = holderOf(name, now.state)

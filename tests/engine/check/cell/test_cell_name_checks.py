@@ -27,7 +27,27 @@ cameras:
   blind: {at: [1, 0, 1], look_at: [0, 0, 0]}
 people: {anna: {shoulder: [2, 0, 1], hand_rests: [1.6, 0, 1]}}
 """
+PINS = """
+flexcell: 1
+equipment: clamps
+backend: {kind: simulated}
+pins:
+  clamp: {kind: digital_output, pin: 17, safe: true}
+  valve: {kind: digital_output, pin: 22, safe: false}
+  there: {kind: digital_input, pin: 27}
+"""
+WITH_EQUIPMENT = """
+flexcell: 1
+cell: bench
+world: {kind: mujoco}
+robots: {left: {model: panda, inputs: {}}}
+equipment:
+  vice: {pins: clamps.yaml}
+  press: {driver: {kind: equipment, host: 10.0.0.2}}
+"""
 ENDS = {
+    "io.ReadInput": "{'on': good, 'off': good, unknown: bad}",
+    "io.WaitForInput": "{reached: good, timeout: bad, unknown: bad}",
     "motion.MoveJoints": "{reached: good, failed: bad}",
     "motion.MovePose": "{reached: good, failed: bad}",
     "motion.MoveFree": "{reached: good, blocked: bad, no_way: bad, failed: bad}",
@@ -294,3 +314,44 @@ def test_names_are_left_unchecked_where_no_cell_is_named(tmp_path: Path) -> None
     assert check_file(tmp_path / "b.yaml", CATALOGUE) == ()
     (tmp_path / "b.yaml").write_text(HEAD + "cell: none.yaml\n" + dedent(body), encoding="utf-8")
     assert [each.code for each in check_file(tmp_path / "b.yaml", CATALOGUE)] == ["invalid-cell"]
+
+
+@pytest.mark.parametrize(
+    ("state", "given", "message"),
+    [
+        ("io.SetOutput", "robot: vice, name: valve, value: true", ""),
+        ("io.WaitForInput", "robot: vice, name: there, timeout_s: 1", ""),
+        # Only its server knows the pins of the press.
+        ("io.SetOutput", "robot: press, name: anything, value: true", ""),
+        (
+            "io.SetOutput",
+            "robot: vice, name: there, value: true",
+            "there| `vice` of the cell bench has no output `there` (known: clamp, valve)",
+        ),
+        (
+            "io.ReadInput",
+            "robot: vice, name: valve",
+            "valve| `vice` of the cell bench has no input `valve` (known: there)",
+        ),
+        # Numbers change with the configuration of a server: names are what counts.
+        (
+            "io.SetOutput",
+            "robot: vice, output: 0, value: true",
+            "0| `vice` of the cell bench has no output `0` (known: clamp, valve)",
+        ),
+        (
+            "io.SetOutput",
+            "robot: vise, name: valve, value: true",
+            "vise| the cell bench has no robot or equipment `vise` (did you mean vice?)",
+        ),
+        (
+            "motion.MoveJoints",
+            f"robot: vice, {JOINTS}",
+            "vice| the cell bench has no robot `vice` (`vice` is equipment)",
+        ),
+    ],
+)
+def test_pins_of_equipment_are_known_by_name(tmp_path: Path, state: str, given: str, message: str) -> None:
+    (tmp_path / "clamps.yaml").write_text(PINS, encoding="utf-8")
+    found = finding_texts(tmp_path, state, given, cell=WITH_EQUIPMENT)
+    assert found == ([f"unknown-in-cell {message}"] if message else [])

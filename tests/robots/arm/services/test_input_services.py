@@ -55,6 +55,9 @@ async def test_simulated_inputs_are_set_published_with_their_names_and_kept_by_a
         assert latest(bus) == DigitalInputs(values=(False,) * 10, names=NAMES)
         assert (await bus.call(SimulateInput(input=9, value=True), to="ur10")).message == "input 9 is on"
         assert latest(bus).values == (*(False,) * 9, True)
+        assert (await bus.call(SimulateInput(name="door_closed", value=True), to="ur10")).message == "input 9 is on"
+        unnamed = await bus.call(SimulateInput(name="gate", value=True), to="ur10")
+        assert unnamed.message == "there is no input gate; the cell names part_present, door_closed"
         refused = await bus.call(SimulateInput(input=10, value=True), to="ur10")
         assert (refused.success, "its inputs are 0 to 9" in refused.message) == (False, True)
         snapshot = world.snapshot()

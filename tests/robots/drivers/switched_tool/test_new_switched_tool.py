@@ -26,7 +26,7 @@ def new_tool(folder: Path, model: str, driver: str) -> SwitchedTool:
     """Return the tool of a cell."""
     (folder / "cell.yaml").write_text(CELL % (model, driver), encoding="utf-8")
     cell = load_cell(folder / "cell.yaml")
-    (assigned,) = (each for each in assigned_drivers(cell) if each.tool)
+    (assigned,) = (each for each in assigned_drivers(cell) if each.device == "tool")
     found = assigned.driver()
     name = assigned.device_name(found)
     context = DeviceContext(cell=cell, robot="arm")

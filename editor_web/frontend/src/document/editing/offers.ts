@@ -92,8 +92,9 @@ function detailOf(name: string, field: EditField, around: Surroundings): string 
     default: {
       const item = open?.items.find((each) => each.name === name && each.kind !== 'tool')
       const tool = open?.items.find((each) => each.name === name && each.kind === 'tool')
+      const isDevice = field.nameKind === 'robot' || field.nameKind === 'controller'
       // A robot that is named as a gripper is asked for its tool.
-      const shown = item?.kind === 'robot' && field.nameKind !== 'robot' ? (tool ?? item) : item
+      const shown = item?.kind === 'robot' && !isDevice ? (tool ?? item) : item
       if (!shown || !open) return ''
       const node = { address: shown.path, kind: shown.kind, name, detail: '', item: shown, children: [] }
       return join(shown.model, stateWords(node, open.now)?.words)

@@ -16,6 +16,7 @@ const KINDS: Readonly<Record<CellNode['kind'], string>> = {
   group: 'Group',
   robot: 'Robot',
   tool: 'Tool',
+  equipment: 'Equipment',
   module: 'Module',
   fixture: 'Fixture',
   part: 'Part',

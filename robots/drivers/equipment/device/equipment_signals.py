@@ -1,0 +1,117 @@
+"""Pins of equipment on the bus: digital inputs and outputs under their names, and the services that set them."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass
+
+from engine.bus import SkillBus
+from engine.errors import RobotError
+from engine.skills.digital_inputs import DigitalInputs, SimulateInput
+from engine.skills.digital_outputs import DigitalOutputs, SetOutput
+from engine.skills.switch_result import SwitchResult
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinSignals:
+    """What is known of the digital pins of one device."""
+
+    inputs: DigitalInputs
+    outputs: DigitalOutputs
+
+    @classmethod
+    def of(cls, values: Mapping[str, bool | float], *, inputs: list[str], outputs: list[str]) -> PinSignals:
+        """Return the signals of these values; numbers are the places in the lists of names."""
+        return cls(
+            inputs=DigitalInputs(values=tuple(bool(values[name]) for name in inputs), names=_numbered(inputs)),
+            outputs=DigitalOutputs(values=tuple(bool(values[name]) for name in outputs), names=_numbered(outputs)),
+        )
+
+    @classmethod
+    def unknown(cls, problem: str) -> PinSignals:
+        """Return that nothing is known, and why."""
+        return cls(inputs=DigitalInputs(values=(), problem=problem), outputs=DigitalOutputs(values=(), problem=problem))
+
+
+def _numbered(names: list[str]) -> dict[str, int]:
+    return {name: number for number, name in enumerate(names)}
+
+
+class EquipmentSignals:
+    """Publishes `<name>/digital_inputs` and `<name>/digital_outputs`, and serves `SetOutput` by name.
+
+    Args:
+        name: The namespace on the bus.
+        now: Returns what is known now.
+        switch: `switch(name, on=…)` turns an output on or off and returns when it is; raises RobotError.
+        simulate: `simulate(name, on=…)` sets an input; None for real ones.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        now: Callable[[], PinSignals],
+        switch: Callable[..., Awaitable[None]],
+        *,
+        simulate: Callable[..., None] | None = None,
+    ) -> None:
+        self._name = name
+        self._now = now
+        self._switch = switch
+        self._simulate = simulate
+        self._bus: SkillBus | None = None
+        self._published: PinSignals | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Publish the pins under the name of the equipment and advertise its services."""
+        self._bus = bus
+        bus.topic(f"{self._name}/digital_inputs", DigitalInputs).provide(lambda: self._now().inputs)
+        bus.topic(f"{self._name}/digital_outputs", DigitalOutputs).provide(lambda: self._now().outputs)
+        bus.advertise_service(SetOutput, self._set_output, namespace=self._name, commands=self._name)
+        if self._simulate is not None:
+            bus.advertise_service(SimulateInput, self._simulate_input, namespace=self._name)
+        self._published = None
+        self.publish_changes()
+
+    def publish_changes(self) -> None:
+        """Publish what has changed since the last time."""
+        if self._bus is None:
+            return
+        now, before = self._now(), self._published
+        self._published = now
+        if before is None or now.inputs != before.inputs:
+            self._bus.topic(f"{self._name}/digital_inputs", DigitalInputs).publish(now.inputs)
+        if before is None or now.outputs != before.outputs:
+            self._bus.topic(f"{self._name}/digital_outputs", DigitalOutputs).publish(now.outputs)
+
+    async def _set_output(self, request: SetOutput) -> SwitchResult:
+        known = self._now().outputs
+        if known.problem:
+            return SwitchResult(success=False, message=known.problem)
+        if request.name not in known.names:
+            # A number means another pin after a change of the configuration.
+            what = request.name or f"number {request.output}"
+            message = f"{self._name} has no output {what}; its outputs are {_listed(known.names)}"
+            return SwitchResult(success=False, message=message)
+        try:
+            await self._switch(request.name, on=request.value)
+        except RobotError as error:
+            return SwitchResult(success=False, message=str(error))
+        self.publish_changes()
+        return SwitchResult(success=True, message=f"{request.name} is {'on' if request.value else 'off'}")
+
+    async def _simulate_input(self, request: SimulateInput) -> SwitchResult:
+        assert self._simulate is not None
+        names = self._now().inputs.names
+        name = request.name or next((each for each, number in names.items() if number == request.input), "")
+        if name not in names:
+            what = request.name or request.input
+            message = f"{self._name} has no input {what}; its inputs are {_listed(names)}"
+            return SwitchResult(success=False, message=message)
+        self._simulate(name, on=request.value)
+        self.publish_changes()
+        return SwitchResult(success=True, message=f"{name} is {'on' if request.value else 'off'}")
+
+
+def _listed(names: Mapping[str, int]) -> str:
+    return ", ".join(names) or "none"
