@@ -20,6 +20,7 @@ from tests.robots.own_address import own_address
 PATIENT_WORLD = "step_s: 0.001, engine_silence_s: 10.0, world_silence_s: 10.0"
 _PATIENT_IRC5 = "stale_s: 5.0, timeout_s: 5.0, patience_s: 300.0"
 PATIENT_FR3 = "stale_s: 5.0, process_silence_s: 10.0, path_tolerance_rad: 0.4"
+PATIENT_2F_85 = "stale_s: 5.0, timeout_s: 2.0, patience_s: 300.0"
 PATIENT_HAND = "stale_s: 5.0, timeout_s: 5.0, patience_s: 300.0"
 _PATIENT_BOARD = "stale_s: 5.0, process_silence_s: 10.0, path_tolerance_rad: 1.0"
 # Nothing reports the end of a switch: a world that is slower than real time gets time for it.
@@ -53,7 +54,7 @@ class RealPath:
 def _ur10(text: str, host: str) -> str:
     arm = f"{{kind: universal_robots, host: {host}, stale_s: 5.0, watchdog_hz: 1.0, process_silence_s: 10.0}}"
     line = f"{{kind: modbus_tcp, host: {host}, port: 15020}}"
-    gripper = f"driver: {{kind: robotiq, connection: {line}, stale_s: 5.0, timeout_s: 2.0}}"
+    gripper = f"driver: {{kind: robotiq, connection: {line}, {PATIENT_2F_85}}}"
     return text.replace("driver: sim", f"driver: {arm}").replace(
         "{model: robotiq_2f85}", f"{{model: robotiq_2f85, {gripper}}}"
     )

@@ -9,7 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.behaviors.real_path.emulated_cell import PATIENT_FR3, PATIENT_HAND, PATIENT_WORLD, EmulatedCell, RealPath
+from tests.behaviors.real_path.emulated_cell import (
+    PATIENT_2F_85,
+    PATIENT_FR3,
+    PATIENT_HAND,
+    PATIENT_WORLD,
+    EmulatedCell,
+    RealPath,
+)
 from tests.robots.drivers.franka.emulated_cabinet import needs_franka
 
 TAKEN, PASSED, PUT = (-0.15, 0.25, 0.03), (0.0, -0.2, 0.03), (0.3, -0.5, 0.03)
@@ -31,7 +38,7 @@ robots:
     gripper:
       model: robotiq_2f85
       driver:
-        {{kind: robotiq, connection: {{kind: modbus_tcp, host: {host}, port: 15020}}, stale_s: 5.0, timeout_s: 2.0}}
+        {{kind: robotiq, connection: {{kind: modbus_tcp, host: {host}, port: 15020}}, {two_f}}}
 fixtures:
   table: {{shape: box, size_m: [2.4, 1.6, 0.04], at: {{xyz: [0, 0, -0.02]}}}}
 parts:
@@ -47,7 +54,8 @@ class PassedPart(RealPath):
     def write_cell(self, folder: Path, host: str) -> Path:
         """Write the cell."""
         file = folder / f"{self.cell}.yaml"
-        file.write_text(CELL.format(host=host, world=PATIENT_WORLD, fr3=PATIENT_FR3, hand=PATIENT_HAND), "utf-8")
+        patience = {"world": PATIENT_WORLD, "fr3": PATIENT_FR3, "hand": PATIENT_HAND, "two_f": PATIENT_2F_85}
+        file.write_text(CELL.format(host=host, **patience), "utf-8")
         return file
 
 
