@@ -86,9 +86,9 @@ class TwoWorlds:
             self._theirs[name] = there
             self._world.host.send(MirrorPart(part=name, pose=there))
             return
-        self._tell(name, there, here, touched=ours)
+        self._keep_ours(name, there, here, touched=ours)
 
-    def _tell(self, name: str, there: Pose, here: Pose, *, touched: bool) -> None:
+    def _keep_ours(self, name: str, there: Pose, here: Pose, *, touched: bool) -> None:
         """Keep a part of this world in the other one while it is touched or moves, and free it at rest."""
         moved = not _alike(here, self._last.get(name, here), _REST_M, _REST_RAD)
         self._last[name] = here

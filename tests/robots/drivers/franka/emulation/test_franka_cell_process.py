@@ -22,7 +22,7 @@ ARM = ArmPlacement(name="arm", model="fr3", base=Pose(xyz=(-0.55, 0.0, 0.0)), gr
 SCENE = SimScene(arms=(ARM,), fixtures=(TABLE,), parts=(box("cube"),))
 
 
-async def test_parts_are_kept_and_freed_and_the_end_of_the_process_is_told() -> None:
+async def test_parts_are_where_another_world_keeps_them_and_a_lost_process_is_named() -> None:
     franka = FrankaCellProcess({"arm": own_address()}, SCENE)
     reports: asyncio.Queue[SimulatorReport] = asyncio.Queue()
     try:
