@@ -206,7 +206,7 @@ class ProcessArmConnection:
         # The client library waits for seconds, and holds back the heartbeats meanwhile.
         self._end_pulse()
         try:
-            answer = await self._answer(process, EnableController(), limit_s=_ENABLE_LIMIT_S)
+            answer = await self._answer(process, EnableController(), limit_s=_ENABLE_LIMIT_S, hung="enabling hangs: ")
         finally:
             if process is self._process and not process.lost_reason:
                 self._begin_pulse()
@@ -301,13 +301,17 @@ class ProcessArmConnection:
             process.end()
             raise
 
-    async def _answer(self, process: _Process, request: ToArmProcess, *, limit_s: float) -> FromArmProcess:
-        """Return the answer to a request; raises RobotError with the cause."""
+    async def _answer(
+        self, process: _Process, request: ToArmProcess, *, limit_s: float, hung: str = ""
+    ) -> FromArmProcess:
+        """Return the answer to a request; raises RobotError with the cause, which begins with `hung` without one."""
         try:
             async with asyncio.timeout(limit_s):
                 return await asyncio.shield(process.ask(request).answer)
         except TimeoutError as error:
-            process.kill(f"the control process of {self._name} did not answer within {limit_s:g} s, and was killed")
+            process.kill(
+                f"{hung}the control process of {self._name} did not answer within {limit_s:g} s, and was killed"
+            )
             raise RobotError(process.lost_reason, where=self._address, hint=CONNECT_AGAIN) from error
         except FlexcellError as error:
             message = self._gone.reason if self._gone is not None else error.message

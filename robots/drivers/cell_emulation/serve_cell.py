@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+
+from msgspec import structs
 
 from engine.cell.drivers import AssignedDriver, Emulator, EmulatorOptions, Ready, assigned_drivers, emulator
 from engine.document import cell_at_start, load_cell, with_simulated_devices
 from engine.errors import FlexcellError
 from robots.drivers.cell_emulation.cell_emulator import CellEmulatorOptions
-from robots.drivers.cell_emulation.serve_franka_cell import has_franka, serve_franka_cell
+from robots.drivers.cell_emulation.serve_franka_cell import franka_hosts, is_franka, serve_franka_cell
 from robots.drivers.cell_emulation.switched_world_tool import SwitchedWorldTool
+from robots.drivers.cell_emulation.two_worlds import TwoWorlds
 from robots.drivers.cell_emulation.world_arm import WorldArm
 from robots.drivers.cell_emulation.world_judge import WorldJudge
 from robots.drivers.cell_emulation.world_time import WorldTime
 from robots.drivers.cell_emulation.world_tool import tool_holds, world_tool
 from robots.drivers.emulation.plant import Plant
 from robots.drivers.emulation.side_channel import SideChannel
+from robots.drivers.franka.emulation.franka_cell_process import FrankaCellProcess
 from robots.model.joint_map import JointMap
 from robots.scene.scene_builder import build_scene
+from robots.scene.sim_scene import ArmPlacement
 from robots.sim.world.sim_world import SimWorld, new_world
 from robots.switched.switched_options import SwitchedToolOptions
 
@@ -134,29 +139,45 @@ async def serve_cell(options: CellEmulatorOptions, ready: Ready) -> None:
         raise FlexcellError("no device of this cell has a driver", where=options.file)
     simulated = with_simulated_devices(cell, [each.written_name for each in assigned])
     seed = options.seed if options.seed >= 0 else None
-    if has_franka(assigned):
-        scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
+    scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
+    others = tuple(each for each in assigned if not is_franka(each))
+    if not others:
         await serve_franka_cell(assigned, scene, options, ready)
         return
-    switched = dict(_switched_tools(assigned))
-    devices = tuple(_Device.of(each) for each in assigned if not (each.device == "tool" and each.robot in switched))
-    scene = build_scene(cell_at_start(simulated), seed=seed, resolve=simulated.resolve)
+    franka = None
+    if len(others) < len(assigned):
+        # Where franky-sim has its arms, they are bodies here.
+        franka = FrankaCellProcess(franka_hosts(assigned), scene)
+        scene = structs.replace(scene, arms=tuple(_driven(arm, franka.arms) for arm in scene.arms))
+    switched = dict(_switched_tools(others))
+    devices = tuple(_Device.of(each) for each in others if not (each.device == "tool" and each.robot in switched))
     joint_maps = {placement.name: placement.robot().joint_map for placement in scene.arms}
     async with new_world(scene, virtual=True) as world:
         time = WorldTime(world)
-        side = SideChannel(WorldJudge(world, time).execute, host=options.host, port=options.side_port)
+        worlds = None if franka is None else TwoWorlds(world, franka.arms, franka)
+        side = SideChannel(WorldJudge(world, time, worlds).execute, host=options.host, port=options.side_port)
         async with time.passing() as stepping:
             try:
                 async with asyncio.TaskGroup() as group:
                     group.create_task(_end_with(stepping))
                     emulated = EmulatedCell(devices, switched, world, time, joint_maps=joint_maps)
                     places = await emulated.serve(group)
+                    if franka is not None and worlds is not None:
+                        places |= await franka.open()
+                        group.create_task(franka.read(worlds.take), name="Franka arms")
                     ready({"host": options.host, "side_port": await side.open(), "devices": places})
             finally:
                 side.close()
+                if franka is not None:
+                    await franka.close()
                 # What moves comes to rest in the time of the world, where that still passes.
                 if not stepping.done():
                     await world.stop()
+
+
+def _driven(arm: ArmPlacement, franka: Collection[str]) -> ArmPlacement:
+    is_franka = arm.name in franka
+    return structs.replace(arm, driven=is_franka, driven_tool=is_franka and arm.gripper is not None)
 
 
 def _switched_tools(assigned: tuple[AssignedDriver, ...]) -> Iterator[tuple[str, SwitchedToolOptions]]:

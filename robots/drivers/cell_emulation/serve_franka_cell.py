@@ -1,4 +1,4 @@
-"""Serves the emulators of a cell whose devices with drivers are all of Franka, until it is cancelled."""
+"""Serves the Franka devices of a cell: alone, until it is cancelled, or beside the world of the others."""
 
 from __future__ import annotations
 
@@ -17,18 +17,9 @@ from robots.scene.sim_scene import SimScene
 _KINDS = frozenset({"franka", "franka_hand"})
 
 
-def has_franka(assigned: Sequence[AssignedDriver]) -> bool:
-    """Return whether the devices are of Franka; raises FlexcellError where only some are."""
-    kinds = {each.kind for each in assigned}
-    if not kinds & _KINDS:
-        return False
-    if kinds - _KINDS:
-        others = ", ".join(sorted(kinds - _KINDS))
-        hint = "simulate the others with `driver: sim`, or emulate each alone"
-        raise FlexcellError(
-            f"a Franka cannot be in one emulated cell with {others}: it brings its own world", hint=hint
-        )
-    return True
+def is_franka(assigned: AssignedDriver) -> bool:
+    """Return whether a device is an arm or a hand of Franka."""
+    return assigned.kind in _KINDS
 
 
 async def serve_franka_cell(
@@ -39,12 +30,7 @@ async def serve_franka_cell(
     Raises:
         FlexcellError: a hand is at another address than its arm, franky-sim is not installed, or cannot listen.
     """
-    hosts = dict(_arm_hosts(assigned))
-    for each in assigned:
-        own = each.options(each.driver())
-        if isinstance(own, FrankaHandOptions) and hosts.get(each.robot) != own.host:
-            raise FlexcellError(f"the hand of {each.robot} is at {own.host}, its arm is not", where=each.written_name)
-    cell = FrankaCell(hosts, scene)
+    cell = FrankaCell(franka_hosts(assigned), scene)
     side = SideChannel(cell.execute, host=options.host, port=options.side_port)
     try:
         places = await cell.open()
@@ -55,7 +41,11 @@ async def serve_franka_cell(
         await cell.close()
 
 
-def _arm_hosts(assigned: Sequence[AssignedDriver]) -> list[tuple[str, str]]:
-    """Return the addresses of the cabinets, by arm."""
-    options = [(each.robot, each.options(each.driver())) for each in assigned]
-    return [(robot, own.host) for robot, own in options if isinstance(own, FrankaOptions)]
+def franka_hosts(assigned: Sequence[AssignedDriver]) -> dict[str, str]:
+    """Return the addresses of the cabinets, by arm; raises FlexcellError for a hand at another address than its arm."""
+    options = [(each, each.options(each.driver())) for each in assigned if is_franka(each)]
+    hosts = {each.robot: own.host for each, own in options if isinstance(own, FrankaOptions)}
+    for each, own in options:
+        if isinstance(own, FrankaHandOptions) and hosts.get(each.robot) != own.host:
+            raise FlexcellError(f"the hand of {each.robot} is at {own.host}, its arm is not", where=each.written_name)
+    return hosts

@@ -41,7 +41,9 @@ def new_robotiq(options: RobotiqOptions, *, name: str, clock: Clock, context: De
         proven=ROBOTIQ.proven,
     )
     timing = tool_timing(context, period_s=options.period_s, stale_s=options.stale_s)
-    return RobotiqGripper(name, transport, timing=timing, widths=options.widths, about=about)
+    return RobotiqGripper(
+        name, transport, timing=timing, widths=options.widths, about=about, patience_s=options.patience_s
+    )
 
 
 def new_transport(options: RobotiqOptions, *, tap: WireTap = NO_TAP) -> DeviceTransport[GripperStatus, GripperCommand]:

@@ -12,7 +12,7 @@ from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
 from robots.drivers.robotiq.gripper_registers import ACTIVATE, RESET, GripperCommand, GripperStatus
 from robots.drivers.robotiq.gripper_units import WidthTable, width_of_count
 from robots.drivers.robotiq.robotiq_motion import ECHO_LIMIT_S
-from robots.drivers.robotiq.robotiq_port import RobotiqPort
+from robots.drivers.robotiq.robotiq_port import PATIENCE_S, RobotiqPort
 from robots.drivers.tool_device import DisableCause, ToolDevice
 from robots.gripper import GripperServer
 
@@ -32,13 +32,15 @@ class RobotiqGripper(ToolDevice[GripperStatus, GripperCommand, RobotiqPort]):
         timing: LinkTiming,
         widths: WidthTable,
         about: DeviceReport,
+        patience_s: float = PATIENCE_S,
     ) -> None:
         super().__init__(name, transport, timing=timing, about=about, words="the gripper")
         self._widths = widths
+        self._patience_s = patience_s
         self._server: GripperServer | None = None
 
     def _new_port(self, link: RobotiqLink) -> RobotiqPort:
-        return RobotiqPort(self.name, link, widths=self._widths, blocked=self._blocked)
+        return RobotiqPort(self.name, link, widths=self._widths, blocked=self._blocked, patience_s=self._patience_s)
 
     def _new_server(self, port: RobotiqPort) -> GripperServer:
         self._server = GripperServer(name=self.name, port=port)

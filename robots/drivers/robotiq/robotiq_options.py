@@ -64,6 +64,9 @@ class RobotiqOptions(DriverOptions, frozen=True, kw_only=True, tag="robotiq"):
     stale_s: Annotated[
         float, Meta(ge=0.1, le=10.0, description="Seconds without a reading until the connection counts as lost")
     ] = 0.5
+    patience_s: Annotated[
+        float, Meta(ge=1.0, le=600.0, description="Seconds by which a motion of the fingers may be late until it fails")
+    ] = 2.0
 
     @property
     def protocol(self) -> str:

@@ -23,7 +23,8 @@ from robots.drivers.robotiq.robotiq_motion import RobotiqMotion, stop_command
 from robots.drivers.tool_command import require_free, require_values
 from robots.port import GripperSample
 
-_GRACE_S = 2.0
+PATIENCE_S = 2.0
+"""By default, a motion of the fingers may be late by so much."""
 _log = logging.getLogger("flexcell.devices")
 _UNKNOWN = "?"
 
@@ -36,6 +37,7 @@ class RobotiqPort:
         link: Its connection.
         widths: Measured counts and openings.
         blocked: Returns why it may not move; empty if it may.
+        patience_s: Seconds by which a motion of the fingers may be late.
     """
 
     def __init__(
@@ -45,11 +47,13 @@ class RobotiqPort:
         *,
         widths: WidthTable,
         blocked: Callable[[], str],
+        patience_s: float = PATIENCE_S,
     ) -> None:
         self._name = name
         self._link = link
         self._widths = widths
         self._blocked = blocked
+        self._patience_s = patience_s
         self._motion: RobotiqMotion | None = None
         self._command: GripperCommand | None = None
         self._velocity_m_s = 0.0
@@ -117,7 +121,7 @@ class RobotiqPort:
             speed=speed_count(speed_m_s),
             force=force_count(force_n),
         )
-        limit_s = self.max_width_m / speed_of_count(command.speed) + _GRACE_S
+        limit_s = self.max_width_m / speed_of_count(command.speed) + self._patience_s
         self._link.arm(stop_command(command))
         self._motion = RobotiqMotion(command, self._submit, start=status.position, limit_s=limit_s)
         return self._motion

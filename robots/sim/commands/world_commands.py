@@ -34,6 +34,13 @@ class MirrorTool(ControlCommand, frozen=True, kw_only=True, tag="mirror_tool"):
     held: bool
 
 
+class MirrorPart(ControlCommand, frozen=True, kw_only=True, tag="mirror_part"):
+    """Keep a part where another world has it, at rest, until that says something else; free it with None."""
+
+    part: str
+    pose: Pose | None
+
+
 class ResetFreeParts(ControlCommand, frozen=True, kw_only=True, tag="reset_parts"):
     """Return the free parts to their poses in the scene, at rest."""
 
@@ -80,6 +87,7 @@ AnyCommand = (
     | MotionCommand
     | MirrorArm
     | MirrorTool
+    | MirrorPart
     | ResetFreeParts
     | PushSimBody
     | MovePersonHand

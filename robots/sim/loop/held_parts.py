@@ -1,7 +1,8 @@
-"""Parts in tools with drivers: they follow the tool as long as the real one reports that it holds something.
+"""Parts that something outside holds: in tools with drivers, or in another world.
 
-The world does not know what is in a real tool: it takes the part at the tool centre point. A part that is let go is
-free again where it is.
+They follow the tool as long as the real one reports that it holds something. The world does not know what is in a real
+tool: it takes the part at the tool centre point. A part of another world is where that has it. A part that is let go
+is free again where it is.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.messages import Pose
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.scene.sim_scene import PartBody
@@ -39,6 +41,7 @@ class HeldParts:
         self._links = {arm.name: physics.body_number(f"{arm.name}/{arm.model.tool_link}") for arm in cell.arms}
         self._reported: set[str] = set()
         self._held: dict[str, _HeldPart] = {}
+        self._mirrored: dict[int, RigidTransform] = {}
 
     def report(self, arm: str, *, held: bool) -> None:
         """Take what the tool of an arm reports, each time it does."""
@@ -49,13 +52,25 @@ class HeldParts:
             self._reported.discard(arm)
             self._held.pop(arm, None)
 
+    def mirror(self, part: str, pose: Pose | None) -> None:
+        """Take where another world has a part, None where that lets it go."""
+        number = self._parts.index(part)
+        if pose is None:
+            self._mirrored.pop(number, None)
+        else:
+            self._mirrored[number] = RigidTransform.from_pose(pose)
+
     def place(self) -> None:
-        """Place the held parts at their tools, at rest."""
+        """Place the held parts at their tools, and the mirrored ones where they are, at rest."""
         for arm, part in self._held.items():
-            pose = self._link(arm).then(part.pose)
-            x, y, z, w = pose.xyzw
-            self._physics.positions[self._qpos[part.number]] = (*pose.xyz, w, x, y, z)
-            self._physics.velocities[self._dof[part.number]] = 0.0
+            self._place(part.number, self._link(arm).then(part.pose))
+        for number, pose in self._mirrored.items():
+            self._place(number, pose)
+
+    def _place(self, number: int, pose: RigidTransform) -> None:
+        x, y, z, w = pose.xyzw
+        self._physics.positions[self._qpos[number]] = (*pose.xyz, w, x, y, z)
+        self._physics.velocities[self._dof[number]] = 0.0
 
     def number(self, arm: str) -> int:
         """Return the number of the part that follows the tool of an arm, -1 for none."""

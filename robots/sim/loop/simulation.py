@@ -16,6 +16,7 @@ from robots.scene.realism import realism
 from robots.sim.commands.world_commands import (
     AnyCommand,
     MirrorArm,
+    MirrorPart,
     MirrorTool,
     ModulePlaced,
     MovePersonHand,
@@ -150,7 +151,7 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
-            case MirrorArm() | MirrorTool():
+            case MirrorArm() | MirrorTool() | MirrorPart():
                 self._mirror(command)
             case HoldMotion():
                 for device in self._devices():
@@ -181,12 +182,14 @@ class Simulation:
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
         return self._modules.place(command, held=held)
 
-    def _mirror(self, command: MirrorArm | MirrorTool) -> None:
+    def _mirror(self, command: MirrorArm | MirrorTool | MirrorPart) -> None:
         match command:
             case MirrorArm():
                 self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
             case MirrorTool():
                 self._held_parts.report(command.arm, held=command.held)
+            case MirrorPart():
+                self._held_parts.mirror(command.part, command.pose)
 
     def step(self) -> list[AnyMotionEvent]:
         """Simulate one step and return the motion events."""

@@ -17,10 +17,11 @@ from tests.engine.cli.command import FLEXCELL
 from tests.robots.own_address import own_address
 
 # A machine that is shared with others falls behind for seconds; nothing here is about how long anything takes.
-_PATIENT_WORLD = "step_s: 0.001, engine_silence_s: 10.0, world_silence_s: 10.0"
+PATIENT_WORLD = "step_s: 0.001, engine_silence_s: 10.0, world_silence_s: 10.0"
 _PATIENT_IRC5 = "stale_s: 5.0, timeout_s: 5.0, patience_s: 300.0"
-_PATIENT_FR3 = "stale_s: 5.0, process_silence_s: 10.0, path_tolerance_rad: 0.4"
-_PATIENT_HAND = "stale_s: 5.0, timeout_s: 5.0, patience_s: 300.0"
+PATIENT_FR3 = "stale_s: 5.0, process_silence_s: 10.0, path_tolerance_rad: 0.4"
+PATIENT_2F_85 = "stale_s: 5.0, timeout_s: 2.0, patience_s: 300.0"
+PATIENT_HAND = "stale_s: 5.0, timeout_s: 5.0, patience_s: 300.0"
 _PATIENT_BOARD = "stale_s: 5.0, process_silence_s: 10.0, path_tolerance_rad: 1.0"
 # Nothing reports the end of a switch: a world that is slower than real time gets time for it.
 _PATIENT_SWITCH = "hold_s: 4.0, release_s: 4.0"
@@ -44,7 +45,7 @@ class RealPath:
         """Write the shipped cell with drivers to a folder."""
 
         def change(text: str) -> str:
-            return self.with_drivers(text.replace("step_s: 0.001", _PATIENT_WORLD), host)
+            return self.with_drivers(text.replace("step_s: 0.001", PATIENT_WORLD), host)
 
         changed_cell(self.cell, folder, cell=change)
         return folder / "cells" / f"{self.cell}.yaml"
@@ -53,7 +54,7 @@ class RealPath:
 def _ur10(text: str, host: str) -> str:
     arm = f"{{kind: universal_robots, host: {host}, stale_s: 5.0, watchdog_hz: 1.0, process_silence_s: 10.0}}"
     line = f"{{kind: modbus_tcp, host: {host}, port: 15020}}"
-    gripper = f"driver: {{kind: robotiq, connection: {line}, stale_s: 5.0, timeout_s: 2.0}}"
+    gripper = f"driver: {{kind: robotiq, connection: {line}, {PATIENT_2F_85}}}"
     return text.replace("driver: sim", f"driver: {arm}").replace(
         "{model: robotiq_2f85}", f"{{model: robotiq_2f85, {gripper}}}"
     )
@@ -80,8 +81,8 @@ def _dual_fr3(text: str, host: str) -> str:
     first, second, third, fourth = host.split(".")
     for number, robot in enumerate(("left", "right")):
         own = f"host: {first}.{second}.{third}.{int(fourth) + number}"
-        arm = f"driver: {{kind: franka, {own}, real_time: ignore, {_PATIENT_FR3}}}"
-        hand = f"{{model: panda_hand, driver: {{kind: franka_hand, {own}, {_PATIENT_HAND}}}}}"
+        arm = f"driver: {{kind: franka, {own}, real_time: ignore, {PATIENT_FR3}}}"
+        hand = f"{{model: panda_hand, driver: {{kind: franka_hand, {own}, {PATIENT_HAND}}}}}"
         assert f"  {robot}:\n    model: panda\n    driver: sim\n" in text
         text = text.replace("    model: panda\n    driver: sim\n", f"    model: fr3\n    {arm}\n", 1)
         text = text.replace("{model: panda_hand}", hand, 1)

@@ -108,6 +108,7 @@ class EgmSource(asyncio.DatagramProtocol):
             "last_heard_s": self.last_heard_s,
             "comm_timeouts": self.comm_timeouts,
             "mci": self._mci.name,
+            "followed": self._reference is not None,
             "rested_s": self.rested_s,
         }
 

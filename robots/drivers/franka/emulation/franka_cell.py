@@ -18,27 +18,28 @@ class FrankaCell:
     Args:
         hosts: Address of the cabinet of each arm.
         scene: The cell; its other arms are not there.
+        report_steps: The simulator reports after so many milliseconds of its time.
     """
 
-    def __init__(self, hosts: Mapping[str, str], scene: SimScene) -> None:
+    def __init__(self, hosts: Mapping[str, str], scene: SimScene, *, report_steps: int = 50) -> None:
         placements = {arm.name: arm for arm in scene.arms}
         robots = tuple(
             RobotSetup(host=inner_address(host), base=placements[arm].base, start_rad=placements[arm].robot().home_rad)
             for arm, host in hosts.items()
         )
         self._hosts = dict(hosts)
-        self._simulator = RobotSimulator(SimulatorSetup(robots=robots, scene=scene))
+        self.simulator = RobotSimulator(SimulatorSetup(robots=robots, scene=scene, report_steps=report_steps))
         self._cabinets = {
             arm: ControlCabinet(FrankaEmulatorOptions(host=host), robot)
-            for (arm, host), robot in zip(hosts.items(), self._simulator.robots, strict=True)
+            for (arm, host), robot in zip(hosts.items(), self.simulator.robots, strict=True)
         }
         self._sides = {
             arm: SideChannel(cabinet.execute, host=hosts[arm], port=0) for arm, cabinet in self._cabinets.items()
         }
 
-    async def open(self) -> dict[str, Mapping[str, object]]:
+    async def open(self) -> dict[str, dict[str, str | int]]:
         """Listen, and return where, by the name of the arm; raises CellError."""
-        places: dict[str, Mapping[str, object]] = {}
+        places: dict[str, dict[str, str | int]] = {}
         for arm, cabinet in self._cabinets.items():
             await cabinet.open()
             side_port = await self._sides[arm].open()
@@ -53,7 +54,7 @@ class FrankaCell:
         for arm, cabinet in self._cabinets.items():
             self._sides[arm].close()
             await cabinet.close()
-        await self._simulator.stop()
+        await self.simulator.stop()
 
     async def execute(self, request: Request) -> Mapping[str, object]:
         """Execute a request of the side channel of the cell: `state`, with where everything is.
@@ -63,7 +64,7 @@ class FrankaCell:
         """
         if str(request["do"]) != "state":
             raise ValueError(f"{request['do']} is not known")
-        report = self._simulator.report
+        report = self.simulator.report
         assert report is not None
         robots = dict(zip(self._cabinets, report.robots, strict=True))
         return {

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import socket
 import sys
+from collections.abc import Callable
 from importlib.util import find_spec
 
 import msgspec
 
 from engine.errors import CellError
-from robots.drivers.franka.emulation.simulator_messages import RobotReport, RobotSetup, SimulatorReport, SimulatorSetup
+from robots.drivers.franka.emulation.simulator_messages import (
+    RobotReport,
+    RobotSetup,
+    SimulatorInput,
+    SimulatorReport,
+    SimulatorSetup,
+)
 
 _MAIN = "from robots.drivers.franka.emulation.simulator_main import main; main()"
 _END_S = 5.0
@@ -27,6 +33,7 @@ class RobotSimulator:
         self.report: SimulatorReport | None = None
         """The last report, whether or not a client is connected."""
         self._setup = setup
+        self._listeners: list[Callable[[SimulatorReport], None]] = []
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None
 
@@ -57,13 +64,22 @@ class RobotSimulator:
         self._take(line, after_s=0.0)
         self._reading = asyncio.create_task(self._read(process.stdout))
 
+    def each_report(self, listener: Callable[[SimulatorReport], None]) -> None:
+        """Call `listener` with each report from now on."""
+        self._listeners.append(listener)
+
     def place_object(self, width_m: float) -> None:
         """Put a box of this width between the fingers, 0 for none; in a scene there are parts instead."""
         if self._setup.scene is not None:
             raise ValueError("its fingers are in a cell: put a part between them there")
-        assert self._process is not None
-        assert self._process.stdin is not None
-        self._process.stdin.write(json.dumps({"object_m": width_m}).encode() + b"\n")
+        self.change(SimulatorInput(object_m=width_m))
+
+    def change(self, given: SimulatorInput) -> None:
+        """Send it what is to be changed; raises CellError where it does not run."""
+        process = self._process
+        if process is None or process.stdin is None:
+            raise CellError("franky-sim does not run", hint="restart the emulator")
+        process.stdin.write(msgspec.json.encode(given) + b"\n")
 
     async def stop(self) -> None:
         """End it, if it runs."""
@@ -85,6 +101,8 @@ class RobotSimulator:
         self.report = report = msgspec.json.decode(line, type=SimulatorReport)
         for robot, each in zip(self.robots, report.robots, strict=True):
             robot.take(each, elapsed_s=report.time_s - after_s)
+        for listener in self._listeners:
+            listener(report)
 
 
 class SimulatedRobot:

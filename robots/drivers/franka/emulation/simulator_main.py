@@ -1,13 +1,12 @@
 """The process of the simulated robots: franky-sim, unchanged, in a scene with easier fingers and softer wrists.
 
-Its first argument is a `SimulatorSetup`. Reads lines of JSON, and ends with its input: `{"object_m": 0.05}` sets the
-width of the box, 0 for none. Writes a `SimulatorReport` when it listens, and then again and again.
+Its first argument is a `SimulatorSetup`. Reads lines of JSON, each a `SimulatorInput`, and ends with its input.
+Writes a `SimulatorReport` when it listens, and then again and again.
 """
 
 from __future__ import annotations
 
 import importlib
-import json
 import os
 import sys
 import threading
@@ -18,16 +17,22 @@ from typing import Any
 
 import msgspec
 
+from robots.drivers.franka.emulation.mirrored_parts import MirroredParts
 from robots.drivers.franka.emulation.scene_bodies import add_bodies, place_bases, soften_pads
 from robots.drivers.franka.emulation.simulated_fingers import add_box, place_box, remove_dry_friction
-from robots.drivers.franka.emulation.simulator_messages import PartReport, RobotReport, SimulatorReport, SimulatorSetup
+from robots.drivers.franka.emulation.simulator_messages import (
+    PartReport,
+    RobotReport,
+    SimulatorInput,
+    SimulatorReport,
+    SimulatorSetup,
+)
 
 # With the gains of franky-sim the last joint never rests: it chatters at 0.08 rad/s with every step.
 _STIFFNESS_NM_RAD = (4500.0, 4500.0, 3500.0, 3500.0, 600.0, 600.0, 600.0)
 _DAMPING_NMS_RAD = (450.0, 450.0, 350.0, 350.0, 60.0, 60.0, 60.0)
 # So long after its last client the time of the robot stands still.
 _LINGERING_STEPS, _IDLE_S = 3000, 0.02
-_REPORTED_STEPS = 50
 _STEP_S = 0.001
 _FINGERS = ("left_finger", "right_finger")
 _AXES = 7
@@ -38,13 +43,13 @@ def main() -> None:
     setup = msgspec.json.decode(sys.argv[1], type=SimulatorSetup)
     franky_sim = importlib.import_module("franky_sim")
     simulator = importlib.import_module("franky_sim.mujoco_simulator").MujocoSimulator()
-    widths: SimpleQueue[float] = SimpleQueue()
+    inputs: SimpleQueue[SimulatorInput] = SimpleQueue()
     with simulator:
         _build(simulator, setup)
         hosts = [robot.host for robot in setup.robots]
         with franky_sim.SimulationServer(simulator, hostname_candidates=hosts) as server:
-            threading.Thread(target=_read_input, args=(widths,), daemon=True).start()
-            _serve(server, simulator, setup, widths)
+            threading.Thread(target=_read_input, args=(inputs,), daemon=True).start()
+            _serve(server, simulator, setup, inputs)
 
 
 def _build(simulator: Any, setup: SimulatorSetup) -> None:
@@ -60,24 +65,29 @@ def _build(simulator: Any, setup: SimulatorSetup) -> None:
         add_bodies(simulator.scene, setup.scene)
 
 
-def _serve(server: Any, simulator: Any, setup: SimulatorSetup, widths: SimpleQueue[float]) -> None:
+def _serve(server: Any, simulator: Any, setup: SimulatorSetup, inputs: SimpleQueue[SimulatorInput]) -> None:
     robots, lingering, late_s = server.robot_servers, 0, 0.0
+    mirrored = MirroredParts(simulator.model, simulator.data)
     _write(_report(server, simulator, setup, steps=0, late_s=0.0))
     for step in count(1):
         is_used = any(robot.tcp_connected or robot.gripper_server.tcp_connected for robot in robots)
         lingering = 0 if is_used else lingering + 1
         if lingering < _LINGERING_STEPS:
             begun_s = time.monotonic()
+            mirrored.place()
             server.run_once()
             late_s += max(0.0, time.monotonic() - begun_s - _STEP_S)
-            if step % _REPORTED_STEPS == 0:
+            if step % setup.report_steps == 0:
                 _write(_report(server, simulator, setup, steps=step, late_s=late_s))
         else:
             for robot in robots:
                 robot.process_commands()
             time.sleep(_IDLE_S)
-        if not widths.empty() and setup.scene is None:
-            place_box(simulator.model, widths.get())
+        while not inputs.empty():
+            given = inputs.get()
+            mirrored.take(given.parts)
+            if given.object_m is not None and setup.scene is None:
+                place_box(simulator.model, given.object_m)
 
 
 def _report(server: Any, simulator: Any, setup: SimulatorSetup, *, steps: int, late_s: float) -> SimulatorReport:
@@ -123,9 +133,9 @@ def _write(message: SimulatorReport) -> None:
     sys.stdout.flush()
 
 
-def _read_input(widths: SimpleQueue[float]) -> None:
+def _read_input(inputs: SimpleQueue[SimulatorInput]) -> None:
     for line in sys.stdin:
-        widths.put(float(json.loads(line)["object_m"]))
+        inputs.put(msgspec.json.decode(line, type=SimulatorInput))
     os._exit(0)
 
 

@@ -23,6 +23,8 @@ class SimulatorSetup(msgspec.Struct, frozen=True, kw_only=True):
 
     robots: tuple[RobotSetup, ...]
     scene: SimScene | None = None
+    report_steps: int = 50
+    """A report is written after so many steps of a millisecond."""
 
 
 class RobotReport(msgspec.Struct, frozen=True, kw_only=True):
@@ -33,6 +35,31 @@ class RobotReport(msgspec.Struct, frozen=True, kw_only=True):
     """Speed of the fastest joint."""
     width_m: float
     touched: tuple[str, ...] = ()
+
+
+class SimulatorInput(msgspec.Struct, frozen=True, kw_only=True):
+    """What is changed in it: the width of the box, 0 for none, and parts that another world keeps, or frees by None."""
+
+    object_m: float | None = None
+    parts: dict[str, Pose | None] = {}
+
+
+class FrankaCellSetup(msgspec.Struct, frozen=True, kw_only=True):
+    """What the process of the cabinets of a cell is started with: their addresses by arm, and the cell."""
+
+    hosts: dict[str, str]
+    scene: SimScene
+    report_steps: int
+
+
+class FrankaCellReady(msgspec.Struct, frozen=True, kw_only=True):
+    """The first line of that process: where the cabinets listen, by arm, or why they do not."""
+
+    places: dict[str, dict[str, str | int]] = {}
+    refused: str = ""
+    hint: str = ""
+    number: int | None = None
+    """Of the error of the operating system, where it is one."""
 
 
 class PartReport(msgspec.Struct, frozen=True, kw_only=True):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Mapping
 from contextlib import asynccontextmanager
+from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
@@ -126,11 +127,15 @@ class FaultyGuidedArm:
             self._emulator.do(case.restore[0], **case.restore[1])
 
     def await_rest(self) -> float:
-        """Wait until the axes rest, by their true state, and return when they came to rest."""
+        """Wait until the axes rest, by their true state, and return when they came to rest.
+
+        It waits for the end of guided motion too: who is quick enables motion again before the `CommTimeout` of an
+        emulator that stood still meanwhile, and is followed on.
+        """
         limit_s = time.monotonic() + _REST_LIMIT_S
-        while (state := self._emulator.do("state"))["in_motion"] and time.monotonic() < limit_s:
+        while _is_guided(state := self._emulator.do("state")) and time.monotonic() < limit_s:
             pass
-        assert not state["in_motion"]
+        assert not _is_guided(state)
         return float(state["egm"]["rested_s"])
 
     def time_s(self) -> float:
@@ -140,3 +145,7 @@ class FaultyGuidedArm:
     def position_rad(self) -> list[float]:
         """Return the true angles of the axes."""
         return list(self._emulator.do("state")["joints_rad"])
+
+
+def _is_guided(state: Mapping[str, Any]) -> bool:
+    return state["in_motion"] or state["egm"]["followed"]

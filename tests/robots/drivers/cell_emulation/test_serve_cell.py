@@ -84,6 +84,18 @@ def test_an_address_that_is_taken_is_named_with_the_device_and_what_to_do(
 
 
 @needs_franka
+def test_an_address_that_is_taken_is_named_beside_other_makes_too(tmp_path: Path) -> None:
+    """The cabinets are in a process of their own there."""
+    host, file = own_address(), tmp_path / "cell.yaml"
+    other = f"  other: {{model: fr3, base: {{xyz: [0.0, 2.0, 0.0]}}, driver: {{kind: franka, host: {host}}}}}\n"
+    file.write_text(CELL.format(host=host) + other)
+    with socket.create_server((host, 1338)), pytest.raises(FlexcellError) as refused:
+        asyncio.run(CELL_EMULATOR.run(CellEmulatorOptions(file=str(file)), unexpected))
+    said = str(refused.value)
+    assert said.startswith(f"the emulator cell cannot listen at {host}:1338: address already in use (")
+
+
+@needs_franka
 def test_a_simulated_robot_whose_address_is_taken_is_named() -> None:
     inner = inner_address(own_address())
     simulator = RobotSimulator(SimulatorSetup(robots=(RobotSetup(host=inner),)))

@@ -103,6 +103,30 @@ async def test_a_control_script_that_starts_late_is_waited_for_and_has_its_tool_
             assert (state["payload_kg"], state["tcp_offset"]) == (1.5, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0])
 
 
+async def test_a_script_that_hangs_after_it_was_uploaded_again_is_named_and_enabled_again_later() -> None:
+    """The library waits for 4 s for each command, or for minutes where it believes that the script has taken one.
+
+    The script that ran before leaves behind that it is ready. The process is ended then, and another one reads.
+    """
+    with EmulatedController() as controller:
+        async with connected(controller, client="ur_rtde", start_s=5.0) as connection:
+            await connection.enable()
+            await asyncio.to_thread(press, controller.host, "stop")
+            await until(lambda: connection.problem.startswith("program ended: "))
+            controller.ask("slow_start", value=1000.0)
+            with pytest.raises(
+                RobotError, match=r"program not ready: setTcp was refused|enabling hangs: .* was killed"
+            ):
+                await connection.enable()
+            controller.ask("slow_start", value=0.0)
+            await asyncio.to_thread(press, controller.host, "stop")
+            controller.wait("stopped")
+            await until(lambda: not connection.lost_reason)
+            await connection.report(readings=5)
+            await connection.enable()
+            assert connection.problem == ""
+
+
 async def test_a_control_script_that_does_not_start_in_its_time_is_named_with_what_the_controller_says(
     client: str,
 ) -> None:

@@ -10,7 +10,7 @@ from engine.messages import Pose
 from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.scene.sim_scene import PartBody
-from robots.sim.commands.world_commands import MirrorArm, MirrorTool, RestoreWorld
+from robots.sim.commands.world_commands import MirrorArm, MirrorPart, MirrorTool, RestoreWorld
 from robots.sim.loop.held_parts import gap_m
 from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
@@ -99,6 +99,21 @@ def test_a_held_part_stays_in_the_hand_when_the_world_is_restored() -> None:
     assert in_hand(world).distance_m(before) < 2e-5
     world.apply(MirrorTool(arm="right", held=False))
     assert held(world) == ""
+
+
+def test_a_part_of_another_world_is_where_that_has_it_and_falls_when_it_is_free() -> None:
+    world = simulation(gravity=True)
+    there = Pose(xyz=(0.4, 0.5, 0.6), xyzw=(0.0, 0.0, 0.6, 0.8))
+    world.apply(MirrorPart(part="cube", pose=there))
+    for _ in range(50):
+        world.step()
+    # What gravity adds in one step.
+    assert frame(world, "cube").distance_m(RigidTransform.from_pose(there)) < 2e-5
+    assert frame(world, "cube").angle_rad(RigidTransform.from_pose(there)) < 1e-6
+    world.apply(MirrorPart(part="cube", pose=None))
+    for _ in range(50):
+        world.step()
+    assert frame(world, "cube").xyz[2] < 0.595
 
 
 @pytest.mark.parametrize(
