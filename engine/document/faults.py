@@ -24,8 +24,8 @@ from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
-FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]
-FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash")
+FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash", "device"]
+FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash", "device")
 _WHERE_AND_WHEN = ("at", "address", "request", "times", "probability")
 
 AddressPattern = Annotated[
@@ -75,6 +75,18 @@ class CrashFault(StrictModel, frozen=True, kw_only=True):
     on_request: Literal["before", "after"] | None = None
 
 
+class DeviceFault(StrictModel, frozen=True, kw_only=True):
+    """A simulated device breaks just before a goal reaches it, and stays broken.
+
+    `air: false`: nothing presses. `stuck`: this axis stays where it is. `sensor`: it says `reads` whatever is true.
+    """
+
+    air: bool = True
+    stuck: Annotated[str, Meta(description="Name of an axis of the device")] = ""
+    sensor: Annotated[str, Meta(description="Name of a sensor of the device")] = ""
+    reads: bool = False
+
+
 class Fault(StrictModel, frozen=True, kw_only=True):
     """One fault: exactly one kind, and the requests that it applies to.
 
@@ -101,6 +113,7 @@ class Fault(StrictModel, frozen=True, kw_only=True):
     duplicate: Literal["at_once", "after_end"] | None = None
     lost: Literal["request", "answer"] | None = None
     crash: CrashFault | None = None
+    device: DeviceFault | None = None
 
     @property
     def kinds(self) -> tuple[FaultKind, ...]:
