@@ -22,6 +22,9 @@ from engine.errors import DocumentError
 from engine.messages import Vector3
 from engine.wording import did_you_mean
 
+LONGEST_TURN_RAD = 5.5
+"""The stroke of a hinge; beyond it, its two ends could not be told apart by its pose."""
+
 
 class DeviceAxis(StrictModel, frozen=True, kw_only=True):
     """A fixture on a pneumatic cylinder: 0 where the document places it, `stroke` at its other end.
@@ -81,6 +84,7 @@ class DevicePosition(StrictModel, frozen=True, kw_only=True):
 
     steps: Annotated[tuple[DeviceStep, ...], Meta(min_length=1)]
     sensors: Annotated[dict[Name, bool], Meta(description="Values of the sensors there")] = {}
+    stable: Annotated[Duration, Meta(description="How long the sensors must say so: longer than passing takes")] = 0.0
     time: Annotated[Duration, Meta(description="Time after the last step until it is assumed, or missed by sensors")]
 
 
@@ -168,6 +172,8 @@ def _axis_problems(
         moved[body] = f"`{key}` of `{name}`"
         if body in fixtures and (fixtures[body].spring is not None or fixtures[body].shape == "tray"):
             yield (*path, "body"), f"`{body}` cannot be moved by an axis", "choose a box or cylinder without a spring"
+        if axis.joint == "hinge" and axis.stroke > LONGEST_TURN_RAD:
+            yield (*path, "stroke"), f"a hinge turns by at most {LONGEST_TURN_RAD:g} rad", "give a smaller stroke"
         if math.hypot(*axis.along) < 1e-6:
             yield (*path, "along"), "this direction has no length", "[1, 0, 0] is along the x axis of the fixture"
         for output in (axis.output, axis.output_back):

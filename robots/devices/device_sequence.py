@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 
@@ -85,7 +86,9 @@ class DeviceSequence:
         self, position: DevicePosition, before: Mapping[str, bool], report: Callable[[], None]
     ) -> DeviceResult:
         if position.sensors:
-            await self._sensors(position.sensors, seconds(position.time), before, report)
+            await self._sensors(
+                position.sensors, seconds(position.time), before, report, stable_s=seconds(position.stable)
+            )
             return DeviceResult(ended="reached", sensed=self._sensed())
         await self._pass(seconds(position.time), report)
         self._require_air()
@@ -99,17 +102,28 @@ class DeviceSequence:
             report()
 
     async def _sensors(
-        self, due: Mapping[str, bool], within_s: float, before: Mapping[str, bool], report: Callable[[], None]
+        self,
+        due: Mapping[str, bool],
+        within_s: float,
+        before: Mapping[str, bool],
+        report: Callable[[], None],
+        *,
+        stable_s: float = 0.0,
     ) -> None:
-        """Wait until sensors have their values."""
-        end_s = self._clock.now_s() + within_s
+        """Wait until sensors have their values, and have had them for a while."""
+        since_s = self._clock.now_s()
+        end_s = since_s + within_s
         while True:
             sensors = self._port.sensors
             if (reason := contradiction(self._device, sensors)) != "":
                 raise _EndedEarly("sensor_contradicts", reason)
-            if all(sensors[name] == on for name, on in due.items()):
-                self._require_air()
-                return
+            if not all(sensors[name] == on for name, on in due.items()):
+                since_s = math.inf
+            else:
+                since_s = min(since_s, self._clock.now_s())
+                if self._clock.now_s() - since_s >= stable_s - 1e-9:
+                    self._require_air()
+                    return
             if self._clock.now_s() >= end_s:
                 break
             await self._clock.sleep(POLL_S)
@@ -118,4 +132,4 @@ class DeviceSequence:
         late = ", ".join(f"{name} is {'off' if on else 'on'}" for name, on in due.items() if sensors[name] != on)
         unmoved = all(sensors[name] == before[name] for name in sensors)
         where = "nothing has changed since its start" if unmoved else "it left its place"
-        raise _EndedEarly("stuck", f"{late} after {within_s:g} s; {where}")
+        raise _EndedEarly("stuck", f"{late or 'the sensors changed until the end'} after {within_s:g} s; {where}")

@@ -25,6 +25,7 @@ from robots.sim.world.sim_world import SimWorld
 
 # A body that has moved by so much, in metres, is told to planners.
 _MOVED_M = 0.001
+_BEFORE_RAD = 0.5
 
 
 class _PortMemo(msgspec.Struct, frozen=True, kw_only=True):
@@ -93,7 +94,9 @@ class SimulatedDevice:
         along = np.array(axis.along) / np.linalg.norm(axis.along)
         if axis.joint == "slide":
             return float(moved.xyz @ along)
-        return float(2.0 * np.arctan2(moved.xyzw[:3] @ along, moved.xyzw[3])) % (2.0 * np.pi)
+        angle = float(2.0 * np.arctan2(moved.xyzw[:3] @ along, moved.xyzw[3]))
+        # From a little before 0 on: an axis rests a little before its end.
+        return (angle + _BEFORE_RAD) % (2.0 * np.pi) - _BEFORE_RAD
 
 
 class SimulatedDevices:

@@ -23,6 +23,7 @@ VICE = {
     "positions": {
         "timed": {"steps": [{"set": {"side": True}}, {"pause": "1.8 s"}, {"set": {"main": True}}], "time": "1 s"},
         "closed": {"steps": [{"set": {"main": True}}], "sensors": {"shut": True, "is_open": False}, "time": "1 s"},
+        "stable": {"steps": [{"set": {"main": True}}], "sensors": {"shut": True}, "stable": 0.3, "time": 1},
         "after": {"steps": [{"wait_for": {"shut": True}, "within": "0.5 s"}], "time": 0},
     },
     "interlocks": [{"position": "after", "device": "door", "at": "closed"}],
@@ -129,3 +130,11 @@ def test_an_interlock_leaves_the_outputs_alone() -> None:
 def test_a_step_waits_for_its_sensor_only_so_long() -> None:
     result, _, took_s = moved("after")
     assert (result.ended, took_s) == ("stuck", 0.5)
+
+
+def test_sensors_that_are_passed_do_not_tell_a_position_that_must_be_stable() -> None:
+    """They say so from 0.2 s to 0.4 s, and that is not long enough; then to the end."""
+    passing, _, _ = moved("stable", lambda t: {"is_open": t < 0.1, "shut": 0.2 < t < 0.4})
+    resting, _, took_s = moved("stable", lambda t: {"is_open": t < 0.1, "shut": t > 0.2})
+    assert (passing.ended, passing.reason) == ("stuck", "shut is off after 1 s; it left its place")
+    assert (resting.ended, took_s) == ("reached", pytest.approx(0.52, abs=0.03))

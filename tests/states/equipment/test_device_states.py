@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import pytest
 
 from engine.errors import Cause
@@ -15,10 +13,10 @@ from states.equipment.move_device import MoveDevice
 from tests.states.fake_context import FakeContext, broken_off
 
 
-def moved(end: object) -> Outcome:
+async def moved(end: object) -> Outcome:
     """Return the outcome of moving a device whose goal ends so."""
     ctx = FakeContext({"vice/jaws/move_device": end})
-    return asyncio.run(MoveDevice(device="vice/jaws", position="closed").run(ctx))
+    return await MoveDevice(device="vice/jaws", position="closed").run(ctx)
 
 
 def ended(how: DeviceEnd, reason: str = "") -> GoalEnd[DeviceResult]:
@@ -27,13 +25,13 @@ def ended(how: DeviceEnd, reason: str = "") -> GoalEnd[DeviceResult]:
 
 
 @pytest.mark.parametrize("how", ["reached", "timed"])
-def test_reached_and_timed_are_two_outcomes(how: DeviceEnd) -> None:
-    assert moved(ended(how)) == Outcome(how)
+async def test_reached_and_timed_are_two_outcomes(how: DeviceEnd) -> None:
+    assert await moved(ended(how)) == Outcome(how)
 
 
 @pytest.mark.parametrize("how", ["no_air", "stuck", "sensor_contradicts", "interlocked"])
-def test_a_failure_is_an_outcome_with_its_cause(how: DeviceEnd) -> None:
-    outcome = moved(ended(how, "the door is open"))
+async def test_a_failure_is_an_outcome_with_its_cause(how: DeviceEnd) -> None:
+    outcome = await moved(ended(how, "the door is open"))
     assert outcome.name == how
     assert outcome.cause is not None
     assert outcome.cause.message == "vice/jaws did not move to closed"
@@ -41,8 +39,8 @@ def test_a_failure_is_an_outcome_with_its_cause(how: DeviceEnd) -> None:
     assert outcome.cause.because.message == "the door is open"
 
 
-def test_a_goal_that_the_device_did_not_execute_failed() -> None:
-    outcome = moved(broken_off(GoalStatus.ABORTED, Cause(message="the pins are silent", where="vice")))
+async def test_a_goal_that_the_device_did_not_execute_failed() -> None:
+    outcome = await moved(broken_off(GoalStatus.ABORTED, Cause(message="the pins are silent", where="vice")))
     assert outcome.name == "failed"
     assert outcome.cause is not None
 
@@ -69,11 +67,11 @@ def test_a_goal_that_the_device_did_not_execute_failed() -> None:
         (DeviceState(sensed="closed", problem="no air: p is off"), True, "unknown", "no air: p is off"),
     ],
 )
-def test_what_nobody_senses_is_unknown_unless_the_command_counts(
+async def test_what_nobody_senses_is_unknown_unless_the_command_counts(
     state: DeviceState, counts: bool, outcome: str, reason: str
 ) -> None:
     ctx = FakeContext(topics={"vice/state": state})
-    found = asyncio.run(CheckDevice(device="vice", position="closed", command_counts=counts).run(ctx))
+    found = await CheckDevice(device="vice", position="closed", command_counts=counts).run(ctx)
     assert found.name == outcome
     because = found.cause.because if found.cause is not None else None
     assert (because.message if because is not None else "") == reason
