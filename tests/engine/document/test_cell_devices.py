@@ -89,7 +89,9 @@ def test_a_name_that_leads_nowhere_is_refused_at_its_place(
 
 
 def test_a_fixture_is_moved_by_one_axis_only(tmp_path: Path) -> None:
-    second = "      other: {body: jaw, along: [1, 0, 0], stroke: 0.05, force: 6, speed: 0.05, output: close}\n    sensors:"
+    second = (
+        "      other: {body: jaw, along: [1, 0, 0], stroke: 0.05, force: 6, speed: 0.05, output: close}\n    sensors:"
+    )
     with pytest.raises(DocumentError, match="`jaw` is moved by `main` of `jaws` too"):
         vice(tmp_path, ("    sensors:", second))
 

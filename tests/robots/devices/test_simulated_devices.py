@@ -118,9 +118,7 @@ async def test_an_interlock_holds_until_the_other_device_was_told_and_its_time_h
     ],
     ids=["no air", "stuck", "sensor off", "sensor on"],
 )
-async def test_each_failure_has_its_name_and_is_mended(
-    tmp_path: Path, fault: SimulateDeviceFault, ended: str
-) -> None:
+async def test_each_failure_has_its_name_and_is_mended(tmp_path: Path, fault: SimulateDeviceFault, ended: str) -> None:
     async with opened(tmp_path) as cell:
         assert (await cell.bus.call(fault, to="slide")).success
         assert (await move(cell.bus, "slide", "back")).ended == ended
