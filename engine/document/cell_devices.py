@@ -29,10 +29,10 @@ LONGEST_TURN_RAD = 5.5
 class DeviceAxis(StrictModel, frozen=True, kw_only=True):
     """A fixture on a pneumatic cylinder: 0 where the document places it, `stroke` at its other end.
 
-    With `output` on, its air presses it to `stroke`, else back to 0. With an `output_back` too, it is pressed by the
-    one that is on; with none on, the valve is in its middle position and vents. `speed` is that of the free axis, `force`
-    what it presses with at rest. Without air a `self_holding` axis, one with a toggle or a check valve, keeps its place
-    and its force; any other lets go.
+    With `output` on, its air presses it to `stroke`, else back to 0. With an `output_back` too, it is pressed by
+    the one that is on; with none on, the valve is in its middle position and vents. `speed` is that of the free
+    axis, `force` what it presses with at rest. Without air a `self_holding` axis, one with a toggle or a check
+    valve, keeps its place and its force; any other lets go.
     """
 
     body: Annotated[str, Meta(min_length=1, description="The fixture that moves")]

@@ -23,6 +23,7 @@ from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
+from engine.skills.device_moves import DeviceFault
 
 FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash", "device"]
 FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash", "device")
@@ -73,18 +74,6 @@ class CrashFault(StrictModel, frozen=True, kw_only=True):
 
     at_event: Annotated[int, Meta(ge=1, description="Number of an event, from 1")] | None = None
     on_request: Literal["before", "after"] | None = None
-
-
-class DeviceFault(StrictModel, frozen=True, kw_only=True):
-    """A simulated device breaks just before a goal reaches it, and stays broken.
-
-    `air: false`: nothing presses. `stuck`: this axis stays where it is. `sensor`: it says `reads` whatever is true.
-    """
-
-    air: bool = True
-    stuck: Annotated[str, Meta(description="Name of an axis of the device")] = ""
-    sensor: Annotated[str, Meta(description="Name of a sensor of the device")] = ""
-    reads: bool = False
 
 
 class Fault(StrictModel, frozen=True, kw_only=True):

@@ -13,7 +13,7 @@ from engine.faults.fault_rule import FaultRule
 from engine.faults.faulty_goal import FaultyGoal, GoalScript
 from engine.runtime.record.skill_port import Goal, SkillPort
 from engine.skill import Action
-from engine.skills.cell_devices import SimulateDeviceFault
+from engine.skills.device_moves import SimulateDeviceFault
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def _crash(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> Fau
 def _break_device(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
     broken = rule.fault.device
     assert broken is not None
-    request = SimulateDeviceFault(air=broken.air, stuck=broken.stuck, sensor=broken.sensor, reads=broken.reads)
+    request = SimulateDeviceFault(fault=broken)
     words = {
         "no air": not broken.air,
         f"{broken.stuck} is stuck": bool(broken.stuck),

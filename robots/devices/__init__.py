@@ -1,4 +1,4 @@
-"""Devices of a cell: their sequences, interlocks and judgement, over a port that sets outputs and reads inputs."""
+"""Devices of a cell: their sequences, interlocks and readings, over a port that sets outputs and reads inputs."""
 
 from robots.devices.device_port import DevicePort
 from robots.devices.device_server import DeviceServer

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from engine.document import DeviceSensor, DeviceSpec
-from engine.skills.cell_devices import BETWEEN, UNKNOWN
+from engine.skills.device_moves import BETWEEN, UNKNOWN
 
 
 def sensed_position(device: DeviceSpec, sensors: Mapping[str, bool]) -> str:
     """Return the position that sensors tell, `between` for none of those that they tell, `unknown` without any."""
-    told = {name: one.sensors for name, one in device.positions.items() if one.sensors}
-    at = (name for name, due in told.items() if all(sensors[sensor] == on for sensor, on in due.items()))
-    return next(at, BETWEEN if told else UNKNOWN)
+    sensed = {name: one.sensors for name, one in device.positions.items() if one.sensors}
+    at = (name for name, due in sensed.items() if all(sensors[sensor] == on for sensor, on in due.items()))
+    return next(at, BETWEEN if sensed else UNKNOWN)
 
 
 def contradiction(device: DeviceSpec, sensors: Mapping[str, bool]) -> str:

@@ -1,4 +1,4 @@
-"""The sequence of a device to a position: interlocks, steps, and the judgement of its end."""
+"""The sequence of a device to a position: interlocks, steps, and how it ends."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import partial
 
 from engine.clock import Clock
 from engine.document import DevicePosition, DeviceSpec, seconds
-from engine.skills.cell_devices import DeviceEnd, DeviceResult
+from engine.skills.device_moves import DeviceEnd, DeviceResult
 from robots.devices.device_port import DevicePort
 from robots.devices.device_reading import contradiction, has_air, sensed_position
 

@@ -11,7 +11,7 @@ from engine.bus import ActiveGoal, SkillBus, Topic
 from engine.clock import Clock
 from engine.document import DeviceSpec
 from engine.errors import GoalRejected, RobotError, SkillFailed
-from engine.skills.cell_devices import DeviceFeedback, DeviceResult, DeviceState, MoveDevice, ReadDevice
+from engine.skills.device_moves import DeviceFeedback, DeviceReading, DeviceResult, MoveDevice, ReadDevice
 from engine.wording import did_you_mean
 from robots.devices.device_port import DevicePort
 from robots.devices.device_reading import contradiction, has_air, sensed_position
@@ -54,23 +54,23 @@ class DeviceServer:
         self._moved = moved
         self._sequence = DeviceSequence(device, port, clock=clock, is_at=is_at)
         self._moving: asyncio.Task[DeviceResult] | None = None
-        self._topic: Topic[DeviceState] | None = None
+        self._topic: Topic[DeviceReading] | None = None
 
     @property
     def moving(self) -> bool:
         """True while a sequence is executed."""
         return self._moving is not None
 
-    def state(self) -> DeviceState:
+    def state(self) -> DeviceReading:
         """Return what is known of the device."""
         try:
             sensors, outputs = dict(self._port.sensors), dict(self._port.outputs)
         except RobotError as error:
-            return DeviceState(commanded=self.memo.commanded, moving=self.moving, problem=error.message)
+            return DeviceReading(commanded=self.memo.commanded, moving=self.moving, problem=error.message)
         problem = contradiction(self._device, sensors)
         if not has_air(self._device, sensors):
             problem = f"no air: {self._device.air_sensor} is off"
-        return DeviceState(
+        return DeviceReading(
             commanded=self.memo.commanded,
             sensed=sensed_position(self._device, sensors),
             moving=self.moving,
@@ -94,7 +94,7 @@ class DeviceServer:
         """Advertise the skills and publish the state."""
         bus.advertise_action(MoveDevice, self._move, namespace=self.name, exclusive=self.name)
         bus.advertise_service(ReadDevice, self._read, namespace=self.name)
-        self._topic = bus.topic(f"{self.name}/state", DeviceState)
+        self._topic = bus.topic(f"{self.name}/state", DeviceReading)
         self._topic.provide(self.state)
 
     def publish(self) -> None:
@@ -142,7 +142,7 @@ class DeviceServer:
         self.publish()
         return result
 
-    async def _read(self, _request: ReadDevice) -> DeviceState:
+    async def _read(self, _request: ReadDevice) -> DeviceReading:
         return self.state()
 
 

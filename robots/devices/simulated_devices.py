@@ -15,7 +15,7 @@ from engine.document import Cell, DeviceAxis, DeviceSpec
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
-from engine.skills.cell_devices import SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer
 from robots.model.transform import RigidTransform
@@ -115,10 +115,12 @@ class SimulatedDevices:
         self._devices = cell.document.devices
         self._ports = {name: SimulatedDevice(device, world) for name, device in self._devices.items()}
         self._servers = {
-            name: DeviceServer(name, device, self._ports[name], clock=clock, is_at=self._is_at, moved=self._tell)
+            name: DeviceServer(
+                name, device, self._ports[name], clock=clock, is_at=self._is_at, moved=self._publish_poses
+            )
             for name, device in self._devices.items()
         }
-        self._told: dict[str, Pose] = {}
+        self._published: dict[str, Pose] = {}
         self.status = DeviceStatus.DISCONNECTED
 
     def register(self, bus: SkillBus) -> None:
@@ -163,7 +165,7 @@ class SimulatedDevices:
             port.air, port.stuck = known.air, set(known.stuck)
             self._servers[name].memo = known.server
         self._drive()
-        self._tell()
+        self._publish_poses()
 
     def world_lost(self, reason: str) -> None:
         """Do nothing: the port of the world says it."""
@@ -171,7 +173,7 @@ class SimulatedDevices:
     def world_restored(self) -> None:
         """Press as before."""
         self._drive()
-        self._tell()
+        self._publish_poses()
 
     async def stop(self) -> None:
         """End all sequences; outputs keep their values."""
@@ -196,7 +198,7 @@ class SimulatedDevices:
     def _is_at(self, device: str, position: str) -> bool:
         return self._servers[device].is_at(position)
 
-    def _tell(self) -> None:
+    def _publish_poses(self) -> None:
         """Tell planners and cameras where the moved fixtures are."""
         present = {
             axis.body: port.pose(axis)
@@ -204,22 +206,23 @@ class SimulatedDevices:
             for axis in self._devices[name].axes.values()
             if self._world.modules.home_of(axis.body) is not None
         }
-        if any(name not in self._told or _differ(pose, self._told[name]) for name, pose in present.items()):
-            self._told = present
+        if any(name not in self._published or _differ(pose, self._published[name]) for name, pose in present.items()):
+            self._published = present
             self._world.modules.fixtures_moved(present)
 
     def _fault_service(self, name: str) -> Callable[[SimulateDeviceFault], object]:
         async def break_device(request: SimulateDeviceFault) -> SwitchResult:
             port, device = self._ports[name], self._devices[name]
-            for word, known in ((request.stuck, device.axes), (request.sensor, device.sensors)):
+            fault = request.fault
+            for word, known in ((fault.stuck, device.axes), (fault.sensor, device.sensors)):
                 if word and word not in known:
                     return SwitchResult(success=False, message=f"{name} has no {word}: it has {', '.join(known)}")
-            port.air = request.air
-            port.stuck = {request.stuck} if request.stuck else set()
-            port.wrong = {request.sensor: request.reads} if request.sensor else {}
+            port.air = fault.air
+            port.stuck = {fault.stuck} if fault.stuck else set()
+            port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
             port.drive()
             self._servers[name].publish()
-            words = "mended" if request == SimulateDeviceFault() else "broken"
+            words = "without a fault" if fault == DeviceFault() else "broken"
             return SwitchResult(success=True, message=f"{name} is {words}")
 
         return break_device

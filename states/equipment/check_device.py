@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from engine.errors import Cause
-from engine.skills.cell_devices import UNKNOWN, DeviceState
+from engine.skills.device_moves import UNKNOWN, DeviceReading
 from engine.state import Context, Outcome, State, nothing_to_undo
 from states.equipment.device_parameter_types import DeviceName, DevicePositionName
 
@@ -30,18 +30,18 @@ class CheckDevice(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Read the state and compare."""
-        state = msgspec.convert(await ctx.latest_data(f"{self.device}/state"), DeviceState)
-        told = f"told {state.commanded or 'nothing'}, sensed {state.sensed}"
+        state = msgspec.convert(await ctx.latest_data(f"{self.device}/state"), DeviceReading)
+        known = f"told {state.commanded or 'nothing'}, sensed {state.sensed}"
         if state.problem:
             return self._not("unknown", state.problem, ctx)
         if state.sensed == self.position:
             return Outcome("at_position")
         if state.sensed != UNKNOWN:
-            return self._not("elsewhere", told, ctx)
+            return self._not("elsewhere", known, ctx)
         if self.command_counts and state.timed:
             at = state.commanded == self.position
-            return Outcome("at_position") if at else self._not("elsewhere", told, ctx)
-        return self._not("unknown", f"{told}; no sensor tells its positions", ctx)
+            return Outcome("at_position") if at else self._not("elsewhere", known, ctx)
+        return self._not("unknown", f"{known}; no sensor tells its positions", ctx)
 
     def _not(self, outcome: str, reason: str, ctx: Context) -> Outcome:
         message = f"{self.device} is not known to be at {self.position}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from engine.errors import Cause
-from engine.skills import cell_devices
+from engine.skills import device_moves
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.device_parameter_types import DeviceName, DevicePositionName
 
@@ -18,7 +18,7 @@ class MoveDevice(State, frozen=True, kw_only=True):
     """
 
     state_name: ClassVar[str] = "equipment.MoveDevice"
-    skills: ClassVar[Skills] = (cell_devices.MoveDevice,)
+    skills: ClassVar[Skills] = (device_moves.MoveDevice,)
     outcomes: ClassVar[tuple[str, ...]] = (
         *("reached", "timed", "no_air", "stuck", "sensor_contradicts", "interlocked", "failed"),
     )
@@ -33,7 +33,7 @@ class MoveDevice(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and return how it ended."""
-        goal = cell_devices.MoveDevice(position=self.position)
+        goal = device_moves.MoveDevice(position=self.position)
         end = await ctx.perform(goal, to=self.device)
         what = f"{self.device} did not move to {self.position}"
         result = end.result

@@ -12,7 +12,7 @@ from engine.bus import SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, PartPoses
-from engine.skills.cell_devices import DeviceState, MoveDevice, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, DeviceReading, MoveDevice, SimulateDeviceFault
 from engine.skills.simulated_world import PushBody
 from tests.behaviors.application import BEHAVIORS
 
@@ -66,16 +66,16 @@ async def test_the_clamp_presses_the_part_on_its_base_and_keeps_it_without_air(t
     async with opened(tmp_path, "clamp", piece) as cell:
         assert await move(cell.bus, "m/plunger", "clamped") == "reached"
         assert await pulled(cell.bus, 70.0, 0.0, 0.0) < 0.002
-        await cell.bus.call(SimulateDeviceFault(air=False), to="m/plunger")
+        await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(air=False)), to="m/plunger")
         assert await pulled(cell.bus, 70.0, 0.0, 0.0) < 0.002
         await cell.bus.call(SimulateDeviceFault(), to="m/plunger")
         assert await pulled(cell.bus, 115.0, 0.0, 0.0) > 0.02
 
 
-async def test_a_clamp_without_a_part_is_told_by_its_sensor(tmp_path: Path) -> None:
+async def test_a_clamp_without_a_part_is_noticed_by_its_sensor(tmp_path: Path) -> None:
     async with opened(tmp_path, "clamp") as cell:
         assert await move(cell.bus, "m/plunger", "clamped") == "stuck"
-        found = cell.bus.topic("m/plunger/state", DeviceState).latest
+        found = cell.bus.topic("m/plunger/state", DeviceReading).latest
         assert found is not None
         assert (found.commanded, found.sensed) == ("clamped", "between")
 
@@ -86,7 +86,7 @@ async def test_the_chuck_holds_a_rod_also_without_air_until_it_is_opened(tmp_pat
     async with opened(tmp_path, "chuck", piece) as cell:
         assert await move(cell.bus, "m/jaws", "closed") == "timed"
         assert await pulled(cell.bus, 0.0, 0.0, 60.0) < 0.002
-        await cell.bus.call(SimulateDeviceFault(air=False), to="m/jaws")
+        await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(air=False)), to="m/jaws")
         assert await pulled(cell.bus, 0.0, 0.0, 60.0) < 0.002
         await cell.bus.call(SimulateDeviceFault(), to="m/jaws")
         assert await move(cell.bus, "m/jaws", "open") == "timed"

@@ -1,4 +1,4 @@
-"""A block is brought by a slide and clamped in a vice that has no sensors; each failure has an outcome with its cause."""
+"""A slide brings a block, a vice without sensors clamps it; each failure is an outcome with its cause."""
 
 from __future__ import annotations
 

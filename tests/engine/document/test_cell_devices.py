@@ -1,4 +1,4 @@
-"""Devices as data: names that lead nowhere are refused at their place, and modules bring theirs with names in the cell."""
+"""Devices as data: names that lead nowhere are refused at their place; modules bring theirs with names in the cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sequence of a device over a port of pins: order and times, sensors, interlocks, and what each failure is called."""
+"""The sequence of a device over a port of pins: order, times, sensors, interlocks, and the name of each failure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from engine.clock import new_clock, run_virtual
 from engine.document.cell_devices import DeviceSpec
-from engine.skills.cell_devices import DeviceResult
+from engine.skills.device_moves import DeviceResult
 from robots.devices.device_sequence import DeviceSequence
 
 VICE = {
@@ -30,12 +30,22 @@ VICE = {
 }
 
 
+def no_change(_time_s: float) -> dict[str, bool]:
+    """Leave all sensors as they are."""
+    return {}
+
+
+def leaves_its_place(time_s: float) -> dict[str, bool]:
+    """Leave the first end, and arrive nowhere."""
+    return {"is_open": time_s < 0.1}
+
+
 @dataclass(kw_only=True)
 class Pins:
     """Pins with a time of each change; sensors change when `follow` is called with the time since."""
 
     sensors: dict[str, bool]
-    follow: Callable[[float], dict[str, bool]] = lambda _: {}
+    follow: Callable[[float], dict[str, bool]]
     outputs: dict[str, bool] = field(default_factory=dict[str, bool])
     axes: dict[str, float] = field(default_factory=dict[str, float])
     log: list[tuple[float, str, bool]] = field(default_factory=list[tuple[float, str, bool]])
@@ -54,7 +64,7 @@ class Pins:
 
 def moved(
     position: str,
-    follow: Callable[[float], dict[str, bool]] = lambda _: {},
+    follow: Callable[[float], dict[str, bool]] = no_change,
     *,
     air: bool = True,
     door: bool = True,
@@ -67,8 +77,8 @@ def moved(
         pins = Pins(sensors={"is_open": True, "shut": False, "air": air}, follow=follow)
         pins.now = lambda: clock.now_s() - start_s
         device = msgspec.convert(VICE, DeviceSpec)
-        sequence = DeviceSequence(device, pins, clock=clock, is_at=lambda *_: door)
-        result = await sequence.execute(position, at_step=lambda *_: None)
+        sequence = DeviceSequence(device, pins, clock=clock, is_at=lambda _device, _position: door)
+        result = await sequence.execute(position, at_step=lambda _step, _steps: None)
         return result, pins.log, round(pins.now(), 2)
 
     return run_virtual(move())
@@ -81,7 +91,7 @@ def test_side_jaws_then_a_pause_then_the_main_jaw_and_only_time_tells() -> None:
     assert log == [(0.0, "side", True), (1.8, "main", True)]
 
 
-def test_sensors_end_it_as_soon_as_they_tell() -> None:
+def test_sensors_end_it_at_once() -> None:
     result, _, took_s = moved("closed", lambda t: {"is_open": t < 0.1, "shut": t > 0.3})
     assert (result.ended, result.sensed) == ("reached", "closed")
     assert took_s == pytest.approx(0.32, abs=0.021)
@@ -90,8 +100,8 @@ def test_sensors_end_it_as_soon_as_they_tell() -> None:
 @pytest.mark.parametrize(
     ("follow", "reason"),
     [
-        (lambda _: {}, "shut is off, is_open is on after 1 s; nothing has changed since its start"),
-        (lambda t: {"is_open": t < 0.1}, "shut is off after 1 s; it left its place"),
+        (no_change, "shut is off, is_open is on after 1 s; nothing has changed since its start"),
+        (leaves_its_place, "shut is off after 1 s; it left its place"),
     ],
 )
 def test_what_does_not_arrive_is_stuck(follow: Callable[[float], dict[str, bool]], reason: str) -> None:
@@ -132,7 +142,7 @@ def test_a_step_waits_for_its_sensor_only_so_long() -> None:
     assert (result.ended, took_s) == ("stuck", 0.5)
 
 
-def test_sensors_that_are_passed_do_not_tell_a_position_that_must_be_stable() -> None:
+def test_sensors_that_are_passed_are_not_a_position_that_must_be_stable() -> None:
     """They say so from 0.2 s to 0.4 s, and that is not long enough; then to the end."""
     passing, _, _ = moved("stable", lambda t: {"is_open": t < 0.1, "shut": 0.2 < t < 0.4})
     resting, _, took_s = moved("stable", lambda t: {"is_open": t < 0.1, "shut": t > 0.2})

@@ -1,4 +1,4 @@
-"""Simulated devices on the bus of an open cell: sensors follow the physics, planners the jaws, and faults end as faults."""
+"""Simulated devices on the bus of an open cell: sensors follow the physics, planners the jaws; faults have names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.bus import GoalStatus, SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses
-from engine.skills.cell_devices import DeviceResult, DeviceState, MoveDevice, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, DeviceReading, DeviceResult, MoveDevice, SimulateDeviceFault
 from engine.skills.planning_scene import ReadPlanningScene
 
 CELL = """\
@@ -64,9 +64,9 @@ async def move(bus: SkillBus, device: str, position: str) -> DeviceResult:
     return end.result
 
 
-def state(bus: SkillBus, device: str) -> DeviceState:
+def state(bus: SkillBus, device: str) -> DeviceReading:
     """Return what is known of a device."""
-    found = bus.topic(f"{device}/state", DeviceState).latest
+    found = bus.topic(f"{device}/state", DeviceReading).latest
     assert found is not None
     return found
 
@@ -100,7 +100,7 @@ async def test_without_sensors_a_state_is_unknown_and_a_position_timed(tmp_path:
         assert (known.commanded, known.sensed, known.timed) == ("clamped", "unknown", True)
 
 
-async def test_an_interlock_holds_until_the_other_device_was_told_and_its_time_has_passed(tmp_path: Path) -> None:
+async def test_an_interlock_holds_until_the_other_device_was_moved_and_its_time_has_passed(tmp_path: Path) -> None:
     async with opened(tmp_path) as cell:
         await move(cell.bus, "slide", "back")
         assert (await move(cell.bus, "slide", "front")).reason == "clamp is not at free"
@@ -111,14 +111,16 @@ async def test_an_interlock_holds_until_the_other_device_was_told_and_its_time_h
 @pytest.mark.parametrize(
     ("fault", "ended"),
     [
-        (SimulateDeviceFault(air=False), "no_air"),
-        (SimulateDeviceFault(stuck="travel"), "stuck"),
-        (SimulateDeviceFault(sensor="at_back", reads=False), "stuck"),
-        (SimulateDeviceFault(sensor="at_front", reads=True), "sensor_contradicts"),
+        (SimulateDeviceFault(fault=DeviceFault(air=False)), "no_air"),
+        (SimulateDeviceFault(fault=DeviceFault(stuck="travel")), "stuck"),
+        (SimulateDeviceFault(fault=DeviceFault(sensor="at_back", reads=False)), "stuck"),
+        (SimulateDeviceFault(fault=DeviceFault(sensor="at_front", reads=True)), "sensor_contradicts"),
     ],
     ids=["no air", "stuck", "sensor off", "sensor on"],
 )
-async def test_each_failure_has_its_name_and_is_mended(tmp_path: Path, fault: SimulateDeviceFault, ended: str) -> None:
+async def test_each_failure_has_its_name_and_can_be_repaired(
+    tmp_path: Path, fault: SimulateDeviceFault, ended: str
+) -> None:
     async with opened(tmp_path) as cell:
         assert (await cell.bus.call(fault, to="slide")).success
         assert (await move(cell.bus, "slide", "back")).ended == ended
@@ -128,7 +130,7 @@ async def test_each_failure_has_its_name_and_is_mended(tmp_path: Path, fault: Si
 
 async def test_a_fault_of_what_a_device_does_not_have_is_refused(tmp_path: Path) -> None:
     async with opened(tmp_path) as cell:
-        answer = await cell.bus.call(SimulateDeviceFault(stuck="travle"), to="slide")
+        answer = await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(stuck="travle")), to="slide")
         assert (answer.success, answer.message) == (False, "slide has no travle: it has travel")
 
 
@@ -158,7 +160,7 @@ async def test_a_restored_world_presses_as_it_did(tmp_path: Path) -> None:
         await move(cell.bus, "slide", "back")
         assert cell.world is not None
         image = cell.world.snapshot()
-        await cell.bus.call(SimulateDeviceFault(stuck="travel"), to="slide")
+        await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(stuck="travel")), to="slide")
         await move(cell.bus, "slide", "front")
         await cell.world.restore(image)
         known = state(cell.bus, "slide")
@@ -170,6 +172,6 @@ async def test_a_self_holding_axis_presses_on_without_air(tmp_path: Path) -> Non
     """The valve moves and nothing follows it."""
     async with opened(tmp_path) as cell:
         await move(cell.bus, "clamp", "clamped")
-        await cell.bus.call(SimulateDeviceFault(air=False), to="clamp")
+        await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(air=False)), to="clamp")
         await move(cell.bus, "clamp", "free")
         assert state(cell.bus, "clamp").axes["bolt"] == pytest.approx(0.05, abs=1e-3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine.errors import Cause
-from engine.skills.cell_devices import DeviceEnd, DeviceResult, DeviceState
+from engine.skills.device_moves import DeviceEnd, DeviceReading, DeviceResult
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.state import Outcome
 from states.equipment.check_device import CheckDevice
@@ -48,27 +48,27 @@ async def test_a_goal_that_the_device_did_not_execute_failed() -> None:
 @pytest.mark.parametrize(
     ("state", "counts", "outcome", "reason"),
     [
-        (DeviceState(commanded="open", sensed="closed"), False, "at_position", ""),
-        (DeviceState(commanded="closed", sensed="between"), False, "elsewhere", "told closed, sensed between"),
+        (DeviceReading(commanded="open", sensed="closed"), False, "at_position", ""),
+        (DeviceReading(commanded="closed", sensed="between"), False, "elsewhere", "told closed, sensed between"),
         (
-            DeviceState(commanded="closed", timed=True),
+            DeviceReading(commanded="closed", timed=True),
             False,
             "unknown",
             "told closed, sensed unknown; no sensor tells its positions",
         ),
-        (DeviceState(commanded="closed", timed=True), True, "at_position", ""),
-        (DeviceState(commanded="open", timed=True), True, "elsewhere", "told open, sensed unknown"),
+        (DeviceReading(commanded="closed", timed=True), True, "at_position", ""),
+        (DeviceReading(commanded="open", timed=True), True, "elsewhere", "told open, sensed unknown"),
         (
-            DeviceState(commanded="closed"),
+            DeviceReading(commanded="closed"),
             True,
             "unknown",
             "told closed, sensed unknown; no sensor tells its positions",
         ),
-        (DeviceState(sensed="closed", problem="no air: p is off"), True, "unknown", "no air: p is off"),
+        (DeviceReading(sensed="closed", problem="no air: p is off"), True, "unknown", "no air: p is off"),
     ],
 )
 async def test_what_nobody_senses_is_unknown_unless_the_command_counts(
-    state: DeviceState, counts: bool, outcome: str, reason: str
+    state: DeviceReading, counts: bool, outcome: str, reason: str
 ) -> None:
     ctx = FakeContext(topics={"vice/state": state})
     found = await CheckDevice(device="vice", position="closed", command_counts=counts).run(ctx)

@@ -17,7 +17,7 @@ BETWEEN = "between"
 """What is sensed where sensors tell that it is at none of its positions."""
 
 
-class DeviceState(Message, frozen=True, kw_only=True):
+class DeviceReading(Message, frozen=True, kw_only=True):
     """What a device was told, and what is known of it; the latest value of `<device>/state`.
 
     `commanded` is the last position that was asked for, empty before the first. `sensed` is the position that sensors
@@ -64,17 +64,23 @@ class MoveDevice(Action[DeviceResult, DeviceFeedback], frozen=True, kw_only=True
     position: Annotated[str, Meta(min_length=1, description="Name of the position")]
 
 
-class ReadDevice(Service[DeviceState], frozen=True, kw_only=True):
+class ReadDevice(Service[DeviceReading], frozen=True, kw_only=True):
     """Return what is known of a device."""
 
 
-class SimulateDeviceFault(Service[SwitchResult], frozen=True, kw_only=True):
-    """Break a simulated device, or mend it, with no field set; real devices do not offer it.
+class DeviceFault(Message, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A fault of a simulated device; none with no field set. It stays until another is set.
 
-    Without `air` nothing presses. The axis `stuck` stays where it is. The `sensor` says `reads` whatever is true.
+    `air: false`: nothing presses. `stuck`: this axis stays where it is. `sensor`: it says `reads` whatever is true.
     """
 
     air: bool = True
-    stuck: str = ""
-    sensor: str = ""
+    stuck: Annotated[str, Meta(description="Name of an axis of the device")] = ""
+    sensor: Annotated[str, Meta(description="Name of a sensor of the device")] = ""
     reads: bool = False
+
+
+class SimulateDeviceFault(Service[SwitchResult], frozen=True, kw_only=True):
+    """Set the fault of a simulated device; real devices do not offer it."""
+
+    fault: DeviceFault = DeviceFault()
