@@ -20,6 +20,7 @@ from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
+from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import DriveAxis
 from robots.sim.world.sim_world import SimWorld
 
@@ -122,6 +123,7 @@ class SimulatedDevices:
         }
         self._published: dict[str, Pose] = {}
         self.status = DeviceStatus.DISCONNECTED
+        world.modules.watch(self._modules_changed)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills of each device, and the service that breaks it."""
@@ -197,6 +199,11 @@ class SimulatedDevices:
 
     def _is_at(self, device: str, position: str) -> bool:
         return self._servers[device].is_at(position)
+
+    def _modules_changed(self, _scene: SimScene) -> None:
+        """Take note that moved fixtures are published where the cell document places them."""
+        self._published = {}
+        self._publish_poses()
 
     def _publish_poses(self) -> None:
         """Tell planners and cameras where the moved fixtures are."""

@@ -14,6 +14,7 @@ from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses
 from engine.skills.device_moves import DeviceFault, DeviceReading, DeviceResult, MoveDevice, SimulateDeviceFault
+from engine.skills.modules import PlugModule
 from engine.skills.planning_scene import ReadPlanningScene
 
 CELL = """\
@@ -175,3 +176,19 @@ async def test_a_self_holding_axis_presses_on_without_air(tmp_path: Path) -> Non
         await cell.bus.call(SimulateDeviceFault(fault=DeviceFault(air=False)), to="clamp")
         await move(cell.bus, "clamp", "free")
         assert state(cell.bus, "clamp").axes["bolt"] == pytest.approx(0.05, abs=1e-3)
+
+
+async def test_planners_know_the_carriage_where_it_is_also_after_a_module_was_plugged(tmp_path: Path) -> None:
+    (tmp_path / "bin").mkdir()
+    module = "flexcell: 1\nmodule: bin\nfixtures: {tray: {shape: tray, size_m: [0.2, 0.2, 0.03]}}\n"
+    (tmp_path / "bin" / "module.yaml").write_text(module, encoding="utf-8")
+    docked = (
+        "connectors: {dock: {at: {xyz: [1, 1, 0]}}}\nmodules: {bin: {module: bin, connector: dock, plugged: false}}\n"
+    )
+    (tmp_path / "cell.yaml").write_text(CELL + docked, encoding="utf-8")
+    async with OpenCell(load_cell(tmp_path / "cell.yaml")) as cell:
+        await move(cell.bus, "slide", "back")
+        await cell.bus.call(PlugModule(), to="bin")
+        scene = await cell.bus.call(ReadPlanningScene(), to="cell")
+        pose = next(one.pose for one in scene.obstacles if one.name == "carriage")
+        assert pose.xyz[1] == pytest.approx(0.2, abs=0.004)
