@@ -15,6 +15,7 @@ from robots.arm.arm_server import ArmServer
 from robots.arm.services.input_services import InputServices
 from robots.arm.services.numbered_signals import require_signals
 from robots.arm.services.output_services import OutputServices
+from robots.devices.simulated_devices import SimulatedDevices
 from robots.scene.docked_scene import with_modules
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement
@@ -70,9 +71,11 @@ def new_world(
             _arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms if not placement.driven
         )
         if cameras is not None:
-            world.modules.watch(cameras.take_scene)
-        world.modules.watch(workspace.take_scene)
+            world.modules.follow(cameras.take_scene)
+        world.modules.follow(workspace.take_scene)
         devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
+        if cell.document.devices:
+            devices += (SimulatedDevices(cell, world, clock=bus.clock),)
         if separation is not None and cameras is not None:
             supervisor = SeparationSupervisor(
                 world,

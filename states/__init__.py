@@ -18,6 +18,8 @@ from states.cell.plug_module import PlugModule
 from states.cell.reach import Reach
 from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
+from states.equipment.check_device import CheckDevice
+from states.equipment.move_device import MoveDevice
 from states.flow.decide import Decide
 from states.flow.log import Log
 from states.flow.set_value import SetValue
@@ -74,6 +76,7 @@ _STATES: tuple[type[State], ...] = (
     Attach,
     CallService,
     Check,
+    CheckDevice,
     CheckHeld,
     CheckMessage,
     Decide,
@@ -98,6 +101,7 @@ _STATES: tuple[type[State], ...] = (
     LearnJointDmp,
     Log,
     Move,
+    MoveDevice,
     MoveFree,
     MoveJoints,
     MoveLinear,

@@ -25,15 +25,15 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
-    "body", "obstacle", "scene_part", "module", "connector", "planner", "topic", "bus_topic", "skill", "controller",
-    "equipment",
+    "body", "obstacle", "scene_part", "device", "position", "module", "connector", "planner", "topic", "bus_topic",
+    "skill", "controller", "equipment",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
-`left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector. `arm_frame` is a frame
-in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both. `body`,
-`obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `topic` is one that the cell
-document declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic,
-`skill` any service or action: only an open cell knows those."""
+`left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
+(`vice/closed`) to a device. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of the cell's view;
+those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the planning scene, to
+which behaviors add. `topic` is one that the cell document declares. `controller` is a robot or `equipment`: both have
+outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -42,7 +42,7 @@ _WORDS: Mapping[str, str] = {
     "scene_part": "part",
     "controller": "robot or equipment",
 }
-_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label"))
+_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position"))
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
 
@@ -74,6 +74,7 @@ class CellNames:
         """Return the message for a name that the cell does not have."""
         owner, _, below = name.partition("/")
         if kind in _OWNED:
+            owner, _, below = name.rpartition("/") if kind == "position" else (owner, "", below)
             return f"`{owner}` of the cell {self.cell} has no {kind} `{below}`"
         return f"the cell {self.cell} has no {_word(kind)} `{name}`"
 
@@ -90,8 +91,8 @@ class CellNames:
             return f"`{name}` is {'' if other == 'equipment' else 'a '}{_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
         if kind in _OWNED:
-            owner, _, below = name.partition("/")
-            return did_you_mean(below, {each.partition("/")[2] for each in known if each.startswith(f"{owner}/")})
+            owner, _, below = name.rpartition("/") if kind == "position" else name.partition("/")
+            return did_you_mean(below, {each[len(owner) + 1 :] for each in known if each.startswith(f"{owner}/")})
         return did_you_mean(name, known)
 
     @staticmethod
@@ -183,6 +184,10 @@ def cell_names(cell: Cell) -> CellNames:
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,
+        "device": frozenset(document.devices),
+        "position": frozenset(
+            f"{name}/{position}" for name, device in document.devices.items() for position in device.positions
+        ),
         "module": frozenset(document.modules),
         "connector": frozenset(document.connectors),
     }

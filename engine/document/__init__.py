@@ -14,6 +14,7 @@ from engine.document.cell import (
     load_cell,
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
+from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -25,6 +26,7 @@ from engine.document.cell_perception import (
     arm_reach_m,
 )
 from engine.document.docking import cell_as_docked, cell_at_start, docks_at_start, modules_below
+from engine.document.duration import seconds
 from engine.document.expression.expression import Template, compile_template
 from engine.document.loader import (
     BehaviorSurvey,
@@ -68,6 +70,10 @@ __all__ = [
     "DataPath",
     "DepthCamera",
     "DetectionRate",
+    "DeviceAxis",
+    "DevicePosition",
+    "DeviceSensor",
+    "DeviceSpec",
     "DocumentSource",
     "Fixture",
     "ForEachSpec",
@@ -112,6 +118,7 @@ __all__ = [
     "parse_source",
     "read_behavior",
     "read_signature",
+    "seconds",
     "survey_behavior",
     "with_simulated_devices",
     "write_yaml",

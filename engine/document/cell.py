@@ -16,6 +16,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
+from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
 from engine.document.cell_modules import (
     ModuleSpec,
@@ -104,6 +105,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         dict[Name, FrameSpec], Meta(description="Where modules are docked; frames of the cell too")
     ] = {}
     modules: dict[Name, ModuleSpec] = {}
+    devices: dict[Name, DeviceSpec] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -140,14 +142,15 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     def with_modules(self, modules: Mapping[str, Module]) -> CellDocument:
         """Return the same cell with its connectors as frames, and with what stands on its modules."""
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
-        parts, cameras = dict(self.parts), dict(self.cameras)
+        parts, cameras, devices = dict(self.parts), dict(self.cameras), dict(self.devices)
         for name, module in modules.items():
             added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
             frames |= added.frames
             fixtures |= added.fixtures
             parts |= added.parts
             cameras |= added.cameras
-        return replace(self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras)
+            devices |= added.devices
+        return replace(self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras, devices=devices)
 
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
@@ -237,6 +240,8 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
         document, source = document.with_modules(modules), with_positions(source, modules)
     require_no_secret(document.store, source)
     require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
+    on_bus = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
+    require_devices(document.devices, source, fixtures=document.fixtures, taken=on_bus)
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)

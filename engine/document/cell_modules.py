@@ -14,6 +14,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec
+from engine.document.cell_devices import DeviceSpec, placed_device
 from engine.document.cell_frames import WORLD, FrameSpec
 from engine.document.cell_perception import DepthCamera
 from engine.document.module_document import Module, ModuleDocument, load_module
@@ -23,7 +24,7 @@ from engine.document.text.yaml_source import DataPath, DocumentSource, PositionT
 from engine.errors import DocumentError
 from engine.wording import did_you_mean
 
-_SECTIONS = ("frames", "fixtures", "parts", "cameras")
+_SECTIONS = ("frames", "fixtures", "parts", "cameras", "devices")
 
 
 class ModuleSpec(StrictModel, frozen=True, kw_only=True):
@@ -43,6 +44,7 @@ class DockedModule(StrictModel, frozen=True, kw_only=True):
     fixtures: dict[str, Fixture]
     parts: dict[str, PartSpec]
     cameras: dict[str, DepthCamera]
+    devices: dict[str, DeviceSpec]
 
 
 def load_modules(
@@ -121,6 +123,7 @@ def docked(name: str, document: ModuleDocument, *, connector: str) -> DockedModu
             for key, one in document.parts.items()
         },
         cameras={named(key): camera(one) for key, one in document.cameras.items()},
+        devices={named(key): placed_device(one, named) for key, one in document.devices.items()},
     )
 
 

@@ -23,9 +23,10 @@ from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
+from engine.skills.device_moves import DeviceFault
 
-FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]
-FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash")
+FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash", "device"]
+FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash", "device")
 _WHERE_AND_WHEN = ("at", "address", "request", "times", "probability")
 
 AddressPattern = Annotated[
@@ -101,6 +102,7 @@ class Fault(StrictModel, frozen=True, kw_only=True):
     duplicate: Literal["at_once", "after_end"] | None = None
     lost: Literal["request", "answer"] | None = None
     crash: CrashFault | None = None
+    device: DeviceFault | None = None
 
     @property
     def kinds(self) -> tuple[FaultKind, ...]:

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document.cell_bodies import Fixture, PartSpec, require_sizes
+from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, require_frames
 from engine.document.cell_perception import DepthCamera
 from engine.document.placement import Name
@@ -35,6 +36,9 @@ class ModuleDocument(StrictModel, frozen=True, kw_only=True):
     fixtures: dict[Name, Fixture] = {}
     parts: dict[Name, PartSpec] = {}
     cameras: dict[Name, DepthCamera] = {}
+    devices: Annotated[
+        dict[Name, DeviceSpec], Meta(description="What moves or switches: vices, clamps, slides, lamps")
+    ] = {}
 
     def uses_of_frames(self) -> Iterator[tuple[DataPath, str]]:
         """Yield in which frames things stand that are no frames, each with its path in the document."""
@@ -67,6 +71,7 @@ def module_of_source(source: DocumentSource, *, file: Path) -> Module:
     """
     document = decode_document(source, ModuleDocument)
     require_sizes(document.fixtures, document.parts, source)
+    require_devices(document.devices, source, fixtures=document.fixtures)
     require_frames(
         document.frames,
         source,

@@ -13,6 +13,7 @@ from engine.faults.fault_rule import FaultRule
 from engine.faults.faulty_goal import FaultyGoal, GoalScript
 from engine.runtime.record.skill_port import Goal, SkillPort
 from engine.skill import Action
+from engine.skills.device_moves import SimulateDeviceFault
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ def send_faulty_goal(rule: FaultRule, sending: RepeatableGoal, scene: FaultConte
             return _lose(rule, sending, scene)
         case "crash":
             return _crash(rule, sending, scene)
+        case "device":
+            return _break_device(rule, sending, scene)
 
 
 def _late(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
@@ -121,6 +124,25 @@ def _crash(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> Fau
     sent = sending()
     _apply(rule, sending, scene, "killed once it has ended")
     return _playing(plays.kill_after(sent, scene.kill), sending, sent)
+
+
+def _break_device(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext) -> FaultyGoal:
+    broken = rule.fault.device
+    assert broken is not None
+    request = SimulateDeviceFault(fault=broken)
+    words = {
+        "no air": not broken.air,
+        f"{broken.stuck} is stuck": bool(broken.stuck),
+        f"{broken.sensor} says {'on' if broken.reads else 'off'}": bool(broken.sensor),
+    }
+    _apply(rule, sending, scene, f"breaks the device: {', '.join(word for word, on in words.items() if on)}")
+
+    async def break_it() -> None:
+        answer = await sending.inner.call(request, to=sending.to, holder=sending.holder)
+        if not answer.success:
+            raise SkillFailed(answer.message, where=sending.address)
+
+    return _playing(plays.send_after(break_it, sending), sending)
 
 
 def _apply(rule: FaultRule, sending: RepeatableGoal, scene: FaultContext, detail: str) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from engine.bus import GoalEnd, GoalStatus
+from engine.cause_chain import cause_of
 from engine.clock import Clock
-from engine.errors import Cause
+from engine.errors import Cause, FlexcellError
 from engine.faults.faulty_goal import AnyGoalEnd, FaultyGoal, GoalScript
 from engine.runtime.record.skill_port import Goal
 
@@ -123,6 +124,23 @@ def copy_after_end(sent: Goal, send_again: Callable[[], Goal | None]) -> GoalScr
             goal.deliver(copy)
             await copy.result()
         return end
+
+    return play
+
+
+def send_after(prepare: Callable[[], Awaitable[None]], send: Callable[[], Goal]) -> GoalScript:
+    """Prepare something, then send the goal and let it end normally; what fails in it ends the goal."""
+
+    async def play(goal: FaultyGoal) -> AnyGoalEnd:
+        try:
+            await prepare()
+            sent = send()
+        except FlexcellError as error:
+            return GoalEnd(GoalStatus.ABORTED, None, cause_of(error))
+        goal.deliver(sent)
+        if goal.cancel_asked.is_set():
+            sent.cancel()
+        return await sent.result()
 
     return play
 

@@ -35,6 +35,9 @@ async def apply_request_fault(rule: FaultRule, question: RepeatableRequest[R], s
             return await _twice(rule, question, scene)
         case "crash":
             return await _killed(rule, question, scene)
+        case "device":
+            # Devices break when they are told to move; reading them is not what breaks them.
+            return await question.ask()
         case "lost" | "hang":
             return await _never(rule, question, scene)
 

@@ -32,6 +32,9 @@ EXAMPLES: Mapping[str, Example] = {
         behavior="test_cylinder/test_cylinder.yaml", shows="a small servo arm dips a cylinder into water"
     ),
     "trolley": Example(behavior="trolley/empty_trolley.yaml", shows="a trolley is plugged in, emptied and unplugged"),
+    "vice": Example(
+        behavior="vice/clamp_block.yaml", shows="a slide brings a block, and a vice without sensors clamps it"
+    ),
 }
 """The examples by name."""
 

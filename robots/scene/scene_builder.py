@@ -11,7 +11,7 @@ from engine.document import CellDocument, Fixture, Person, RobotSpec, UnknownBod
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose
-from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, SimScene
+from robots.scene.sim_scene import ArmPlacement, AxisBody, FixtureBody, PartBody, PersonBody, Rgba, SimScene
 
 Resolve = Callable[[str], Path]
 
@@ -39,7 +39,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         world_silence_s=world.world_silence_s,
         start_limit_s=world.start_limit_s,
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items()),
-        fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
+        fixtures=_fixtures(document),
         parts=tuple(_parts(document, seed)),
         people=tuple(_person(name, person) for name, person in document.people.items()),
         frames=document.fixed_frames,
@@ -52,6 +52,23 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
             if body.mass_kg is not None
         ),
     )
+
+
+def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
+    bodies = {name: _fixture(name, fixture) for name, fixture in document.fixtures.items()}
+    for axis in (axis for device in document.devices.values() for axis in device.axes.values()):
+        joint = AxisBody(
+            hinge=axis.joint == "hinge",
+            along=axis.along,
+            stroke=axis.stroke,
+            force=axis.force,
+            speed=axis.speed,
+            mass_kg=axis.mass_kg,
+        )
+        bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
+        for name in axis.against:
+            bodies[name] = msgspec.structs.replace(bodies[name], jaw_friction=axis.friction)
+    return tuple(bodies.values())
 
 
 def _fixture(name: str, fixture: Fixture) -> FixtureBody:

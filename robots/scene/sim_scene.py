@@ -58,12 +58,27 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
         )
 
 
+class AxisBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The joint of a fixture that a device moves: from 0, its pose in the scene, to `stroke` in m or rad.
+
+    `force` in N or N m is what it presses with; `speed` in m/s or rad/s is that of the free axis.
+    """
+
+    hinge: bool
+    along: Vector3
+    stroke: float
+    force: float
+    speed: float
+    mass_kg: float
+
+
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
     With `spring_n_m` above 0 it rests on a spring and a damper and yields along its z axis, like foam
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
-    `skin_friction` with any other body.
+    `skin_friction` with any other body. With an `axis` it is moved by a device. `jaw_friction` is that of
+    the surface of what a device presses with, or against.
     """
 
     name: str
@@ -75,6 +90,8 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     spring_ns_m: float = 60.0
     sprung_kg: float = 0.1
     skin_friction: float = 0.3
+    axis: AxisBody | None = None
+    jaw_friction: float | None = None
     rgba: Rgba = GREY
 
 

@@ -13,11 +13,14 @@ from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
 from engine.document.cell import Cell
+from engine.document.faults import Faults
 from engine.event import Event, NodeExited
+from engine.faults import FaultPort
 from engine.journal import NullJournal
 from engine.messages import JointState, PartPoses, Pose
 from engine.registry import load_states
 from engine.runtime.plan import new_plan
+from engine.runtime.record.skill_port import BusPort
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
 from engine.runtime.run_result import RunResult
@@ -45,6 +48,7 @@ class Application:
     cell: Cell
     seed: int | None = None
     parameters: dict[str, object] = field(default_factory=dict[str, object])
+    faults: Faults | None = None
     meanwhile: Meanwhile | None = None
     supervision: RunOptions | None = None
     log: list[Event] = field(default_factory=list[Event])
@@ -73,6 +77,7 @@ class Application:
         async with OpenCell(self.cell, seed=self.seed, store_path=str(folder / "store.db")) as cell:
             run = Run(
                 plan,
+                skills=self._port(cell),
                 run="application",
                 bus=cell.bus,
                 parameters=self.parameters,
@@ -96,6 +101,11 @@ class Application:
                 if isinstance(end, Exception):
                     raise end
             return result
+
+    def _port(self, cell: OpenCell) -> FaultPort | None:
+        if self.faults is None:
+            return None
+        return FaultPort(BusPort(cell.bus), self.faults, clock=cell.bus.clock, seed=self.seed or 0)
 
     async def _watch(self, cell: OpenCell) -> None:
         while True:

@@ -33,6 +33,8 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "cell.Reach",
         "cell.UnplugModule",
         "cell.Withdraw",
+        "equipment.CheckDevice",
+        "equipment.MoveDevice",
         "flow.Decide",
         "flow.Log",
         "flow.SetValue",

@@ -51,6 +51,14 @@ class PushSimBody(ControlCommand, frozen=True, kw_only=True, tag="push"):
     push: PushBody
 
 
+class DriveAxis(ControlCommand, frozen=True, kw_only=True, tag="drive_axis"):
+    """Press the axis of a fixture towards its stroke, 1, or towards 0, -1, or not at all, 0; or keep it `locked`."""
+
+    fixture: str
+    direction: float
+    locked: bool = False
+
+
 class MovePersonHand(ControlCommand, frozen=True, kw_only=True, tag="move_hand"):
     """Move the hand of a person."""
 
@@ -90,6 +98,7 @@ AnyCommand = (
     | MirrorPart
     | ResetFreeParts
     | PushSimBody
+    | DriveAxis
     | MovePersonHand
     | RestoreWorld
     | ShutDownWorld

@@ -15,6 +15,7 @@ from robots.port import Array
 from robots.scene.realism import realism
 from robots.sim.commands.world_commands import (
     AnyCommand,
+    DriveAxis,
     MirrorArm,
     MirrorPart,
     MirrorTool,
@@ -31,6 +32,7 @@ from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
 from robots.sim.loop.held_parts import HeldParts
@@ -55,8 +57,8 @@ class Simulation:
 
     def __init__(self, cell: CellModel) -> None:
         self._cell = cell
-        # Modules change the model; a built cell is only read.
-        self._physics = physics = Physics(copy(cell.model) if cell.scene.modules else cell.model)
+        # Modules and axes change the model; a built cell is only read.
+        self._physics = physics = Physics(copy(cell.model) if cell.scene.modules or has_axes(cell) else cell.model)
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
@@ -88,6 +90,7 @@ class Simulation:
             for arm in cell.arms
         }
         self._hands = ExternalPushes(physics)
+        self._axes = DeviceAxes(cell, physics)
         self._held_parts = HeldParts(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
@@ -151,8 +154,8 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
-            case MirrorArm() | MirrorTool() | MirrorPart():
-                self._mirror(command)
+            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis():
+                self._follow(command)
             case HoldMotion():
                 for device in self._devices():
                     device.hold(command.motion, request=command.request)
@@ -182,8 +185,10 @@ class Simulation:
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
         return self._modules.place(command, held=held)
 
-    def _mirror(self, command: MirrorArm | MirrorTool | MirrorPart) -> None:
+    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis) -> None:
         match command:
+            case DriveAxis():
+                self._axes.drive(command)
             case MirrorArm():
                 self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
             case MirrorTool():

@@ -14,6 +14,7 @@ from engine.messages import Pose
 from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
+from robots.sim.physics.device_axis import add_axis, add_jaw
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.plant_errors import PlantErrors
@@ -81,7 +82,7 @@ def build_cell(scene: SimScene) -> CellModel:
     frames += tuple(body for person in scene.people for body in body_names(person.name))
     # Frames are drawn; only `parts` are known by name.
     unknown = tuple(part.name for part in scene.unknown_parts)
-    frames += unknown
+    frames += (*unknown, *(fixture.name for fixture in scene.fixtures if fixture.axis is not None))
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -139,6 +140,10 @@ def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
         geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
         if fixture.spring_n_m > 0.0:
             _add_spring(body, geom, fixture)
+        if fixture.jaw_friction is not None:
+            add_jaw(geom, friction=fixture.jaw_friction)
+        if fixture.axis is not None:
+            add_axis(spec, body, geom, fixture.name, fixture.axis)
         return
     for centre, size in tray_boxes(fixture):
         body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])

@@ -83,6 +83,14 @@ class Physics:
         """Return the number of a body."""
         return int(self._model.body(name).id)
 
+    def motor_number(self, name: str) -> int:
+        """Return the number of a motor in `motors`."""
+        return int(self._model.actuator(name).id)
+
+    def set_dry_friction(self, joint: str, force: float) -> None:
+        """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
+        self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force
+
     def members(self, body: int) -> NDArray[np.intp]:
         """Return the numbers of a body and of all its descendants."""
         found = {body}

@@ -15,7 +15,8 @@ from robots.sim.physics.person_drawing import person_geometries
 def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescription:
     """Return everything drawable; meshes come from `cache` (the user's folder by default) if present.
 
-    Frames are those of `FramePoses`: `<arm>/<link>`, `<person>/<body>` and part names; fixtures are fixed to `world`.
+    Frames are those of `FramePoses`: `<arm>/<link>`, `<person>/<body>` and part names; fixtures are fixed to `world`,
+    those that a device moves have a frame of their own.
     """
     geometries = [
         _mesh(arm.name, index, visual)
@@ -46,15 +47,16 @@ def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
     pose = fixture.pose
     if fixture.shape != "tray":
         kind, size = _shape(fixture.shape, fixture.size_m)
+        at = pose if fixture.axis is None else Pose(xyz=(0.0, 0.0, 0.0))
         return [
             VisualGeometry(
                 name=fixture.name,
-                frame="world",
+                frame="world" if fixture.axis is None else fixture.name,
                 kind=kind,
                 size_m=size,
                 rgba=fixture.rgba,
-                xyz=pose.xyz,
-                xyzw=pose.xyzw,
+                xyz=at.xyz,
+                xyzw=at.xyzw,
             )
         ]
     return [

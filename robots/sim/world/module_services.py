@@ -6,6 +6,8 @@ import asyncio
 from collections.abc import Callable, Collection, Coroutine, Mapping
 from typing import Any
 
+from msgspec.structs import replace
+
 from engine.bus import SkillBus, Topic
 from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
 from engine.errors import RobotError, SkillFailed
@@ -43,6 +45,7 @@ class ModuleServices:
         self._host = host
         self._cell = cell if cell is not None and cell.modules else None
         self._listeners: list[SceneListener] = []
+        self._followers: list[SceneListener] = []
         self._topic: Topic[CellModules] | None = None
         self.changing = asyncio.Lock()
         """Held while the world changes what is in it, or is restored."""
@@ -62,6 +65,22 @@ class ModuleServices:
     def watch(self, listener: SceneListener) -> None:
         """Call `listener` after each change of what is in the world."""
         self._listeners.append(listener)
+
+    def follow(self, listener: SceneListener) -> None:
+        """Call `listener` when devices have moved fixtures too."""
+        self._listeners.append(listener)
+        self._followers.append(listener)
+
+    def home_of(self, fixture: str) -> Pose | None:
+        """Return where the cell document places a fixture; None while its module is not plugged."""
+        fixtures = self.document.fixtures if self.document is not None else {}
+        return fixtures[fixture].at.pose() if fixture in fixtures else None
+
+    def fixtures_moved(self, poses: Mapping[str, Pose]) -> None:
+        """Take where devices have moved fixtures, and tell those who follow them."""
+        self.scene = _with_poses(self.scene, poses)
+        for listener in self._followers:
+            listener(self.scene)
 
     def begin(self) -> None:
         """Take the state of a world that was built anew."""
@@ -286,3 +305,8 @@ class ModuleServices:
 
     def _refused(self, message: str, *, hint: str) -> SkillFailed:
         return SkillFailed(message, where=self._world, hint=hint)
+
+
+def _with_poses(scene: SimScene, poses: Mapping[str, Pose]) -> SimScene:
+    fixtures = tuple(replace(one, pose=poses.get(one.name, one.pose)) for one in scene.fixtures)
+    return replace(scene, fixtures=fixtures)

@@ -48,6 +48,7 @@ KINDS = [
     "lost: request",
     "lost: answer",
     "crash: {on_request: after}",
+    "device: {air: false}",
 ]
 PLACES = st.sampled_from(
     ["", "at: root/both/*, ", "at: root/read, ", "address: left/gripper/state, ", "address: left/**, "]

@@ -1,0 +1,33 @@
+"""The joint of a fixture that a device moves, in MuJoCo's specification: a throttled pneumatic cylinder."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from robots.scene.sim_scene import AxisBody
+from robots.sim.physics.physics import mujoco
+from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF
+
+
+def add_jaw(geom: Any, *, friction: float) -> None:
+    """Give a geometry the surface of jaws: stiff, with this coefficient of friction with any other body."""
+    geom.priority, geom.condim = 1, 4
+    geom.solref, geom.solimp = list(PAD_SOLREF), list(PAD_SOLIMP)
+    geom.friction[0] = friction
+
+
+def add_axis(spec: Any, body: Any, geom: Any, name: str, axis: AxisBody) -> None:
+    """Put a fixture on its joint, with a motor whose control is the force.
+
+    Air that leaves through a throttle makes the speed: force and damping balance at the speed of the free axis. Weight
+    is balanced, as by the guide of a cylinder.
+    """
+    kind = mujoco.mjtJoint.mjJNT_HINGE if axis.hinge else mujoco.mjtJoint.mjJNT_SLIDE
+    joint = body.add_joint(name=name, type=kind, axis=list(axis.along))
+    joint.limited, joint.range = mujoco.mjtLimited.mjLIMITED_TRUE, [0.0, axis.stroke]
+    joint.solref_limit, joint.solimp_limit = list(PAD_SOLREF), list(PAD_SOLIMP)
+    joint.damping[0] = axis.force / axis.speed
+    body.gravcomp = 1.0
+    geom.mass = axis.mass_kg
+    motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    motor.set_to_motor()
