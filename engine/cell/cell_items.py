@@ -24,6 +24,7 @@ ItemKind = Literal[
     "robot",
     "tool",
     "equipment",
+    "device",
     "module",
     "fixture",
     "part",
@@ -169,6 +170,9 @@ def _items(cell: Cell) -> Iterator[CellItem]:
         yield CellItem(path=f"modules/{name}", kind="module", name=name, model=module.document.module)
     for name, fixture in document.fixtures.items():
         yield CellItem(path=f"fixtures/{name}", kind="fixture", name=name, model=fixture.shape, owner=owner(name))
+    for name, device in document.devices.items():
+        model = ", ".join(device.positions)
+        yield CellItem(path=f"devices/{name}", kind="device", name=name, model=model, owner=owner(name))
     for name, part in document.parts.items():
         yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape, owner=owner(name))
     for name, frame in document.frames.items():
@@ -198,7 +202,7 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith(f"{item.name}/") and not each.startswith(tools))
         case "tool":
             return tuple(each for each in known if each.startswith(tools))
-        case "camera" | "equipment":
+        case "camera" | "equipment" | "device":
             return tuple(each for each in known if each.startswith(f"{item.name}/"))
         case "part":
             return tuple(each for each in known if each == "cell/parts")

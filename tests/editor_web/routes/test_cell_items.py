@@ -12,6 +12,7 @@ from engine.clock import LoopClock
 from engine.document.cell import load_cell
 from engine.messages import GripperState
 from engine.project import BusInspector
+from engine.skills.device_moves import DeviceReading
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 
@@ -55,3 +56,18 @@ async def test_an_editor_of_the_cell_reads_which_models_there_are(serve: Serve) 
         body = (await served.http.get("/api/v1/cell/models", headers=headers)).json()
     assert {"panda", "ur10", "irb4600"} <= set(body["robots"])
     assert {"panda_hand", "magnet"} <= set(body["tools"])
+
+
+async def test_a_device_stands_below_its_module_with_its_positions_lines_and_topics(serve: Serve) -> None:
+    backend = FakeBackend()
+    cells = Path(__file__).parents[3] / "behaviors" / "cells"
+    backend.cell = cast("OpenCell", SimpleNamespace(document=load_cell(cells / "vice.yaml")))
+    async with SkillBus(LoopClock()) as bus, serve(backend) as served:
+        backend.known_inspector = BusInspector(bus)
+        bus.topic("vice/jaws/state", DeviceReading)
+        headers = {"Authorization": f"Bearer {served.access.viewer}"}
+        items = (await served.http.get("/api/v1/cell/items", headers=headers)).json()["items"]
+    jaws = next(item for item in items if item["path"] == "devices/vice/jaws")
+    assert (jaws["kind"], jaws["model"], jaws["owner"]) == ("device", "open, closed", "modules/vice")
+    assert (jaws["topics"], jaws["file"]) == (["vice/jaws/state"], "../modules/vice/module.yaml")
+    assert jaws["text"].startswith("jaws:")

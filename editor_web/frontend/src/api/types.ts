@@ -457,7 +457,7 @@ export interface CellFit {
 /** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1; `file` is the document of its module, empty for that of the cell. */
 export interface CellItem {
   readonly path: string
-  readonly kind: "camera" | "equipment" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
+  readonly kind: "camera" | "device" | "equipment" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
   readonly name: string
   readonly model: string
   readonly owner: string

@@ -31,6 +31,7 @@ const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool' | 'frame'>, str
   robot: 'Robots',
   equipment: 'Equipment',
   module: 'Modules',
+  device: 'Devices',
   fixture: 'Fixtures',
   part: 'Parts',
   camera: 'Cameras',

@@ -17,6 +17,7 @@ const KINDS: Readonly<Record<CellNode['kind'], string>> = {
   robot: 'Robot',
   tool: 'Tool',
   equipment: 'Equipment',
+  device: 'Device',
   module: 'Module',
   fixture: 'Fixture',
   part: 'Part',
