@@ -6,7 +6,7 @@ import math
 
 from engine.messages.separation import SeparationState
 
-_SLOW_SHARE, _SLOW_S = 0.15, 1.0
+_SLOW_SHARE = 0.15
 # Voxels flicker by about that; an arm that starts nearer than this beyond the distance at rest stands again at once.
 _SPARE_M = 0.03
 # New paths keep this much more, so that an arm gets on at more than a creep.
@@ -37,10 +37,10 @@ class MonitoredSeparation:
         """Take note that an arm begins to move: how long it creeps counts from here."""
         self._slow_since_s.pop(arm, None)
 
-    def slow_reason(self, arm: str) -> str:
-        """Return who has made an arm creep or stand for a second or more; empty if nobody has."""
+    def slow_reason(self, arm: str, *, for_s: float) -> str:
+        """Return who has made an arm creep or stand for so long or longer; empty if nobody has."""
         since_s = self._slow_since_s.get(arm)
-        if since_s is None or self._states[arm].time_s - since_s < _SLOW_S:
+        if since_s is None or self._states[arm].time_s - since_s < for_s:
             return ""
         return self._describe(arm)
 

@@ -24,6 +24,8 @@ from robots.port import Motion, MotionEnd, MotionReport
 from robots.workspace.workspace import Workspace
 
 _HELD = "held"
+# After so long at a creep an arm stops for another path; twice as long each time, as a creep gets there too.
+_CREEP_S, _LONGEST_CREEP_S = 1.0, 16.0
 T = TypeVar("T")
 
 _log = logging.getLogger("flexcell.arm")
@@ -69,6 +71,7 @@ class AdaptiveMotion(MonitoredMotion):
         self._checking = False
         self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._attempts, self._stops = 0, runner.stops
+        self._creep_s = _CREEP_S
         self._detected_late = self._replan_failure = self._slowed = ""
         self.statistics = AdaptiveMotionReport()
         self.phase: MotionPhase = "moving"
@@ -142,9 +145,11 @@ class AdaptiveMotion(MonitoredMotion):
             if collision is not None and not end.done():
                 await self._stop_before(inner, collision)
                 return self.reason
-            slow = self._paths.slow_reason
-            if slow and (self._waiting.may_search or self._paths.near_reason) and not end.done():
+            near = self._paths.near_reason
+            slow = self._paths.slow_reason(for_s=_CREEP_S if near else self._creep_s)
+            if slow and (self._waiting.may_search or near) and not end.done():
                 self._slowed = slow
+                self._creep_s = min(2.0 * self._creep_s, _LONGEST_CREEP_S)
                 await self._stop(inner, slow)
                 return slow
         return None

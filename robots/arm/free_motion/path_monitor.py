@@ -59,11 +59,10 @@ class PathMonitor:
         """The time after which a moving arm looks without a change of the scene, in seconds."""
         return _SEPARATION_LOOK_S if self._workspace.separation is not None else None
 
-    @property
-    def slow_reason(self) -> str:
-        """Who makes the arm creep or stand by separation monitoring; empty if nobody does."""
+    def slow_reason(self, *, for_s: float) -> str:
+        """Return who has made the arm creep or stand for so long by separation monitoring; empty if nobody has."""
         separation = self._workspace.separation
-        return separation.slow_reason(self._runner.name) if separation is not None else ""
+        return separation.slow_reason(self._runner.name, for_s=for_s) if separation is not None else ""
 
     @property
     def near_reason(self) -> str:

@@ -24,12 +24,13 @@ def _crept(until_s: float) -> MonitoredSeparation:
 
 
 def test_who_makes_an_arm_creep_for_a_second_is_named_with_distance_and_body() -> None:
-    assert _crept(0.9).slow_reason("left") == ""
-    assert _crept(1.1).slow_reason("left") == (
+    assert _crept(0.9).slow_reason("left", for_s=1.0) == ""
+    assert _crept(1.1).slow_reason("left", for_s=1.0) == (
         "an obstacle seen by the cameras is 0.60 m from left/hand: separation monitoring permits hardly any motion"
         " there, and none below 0.48 m"
     )
-    assert _crept(1.1).slow_reason("right") == ""
+    assert _crept(1.1).slow_reason("left", for_s=2.0) == ""
+    assert _crept(1.1).slow_reason("right", for_s=1.0) == ""
 
 
 @pytest.mark.parametrize(
@@ -44,17 +45,17 @@ def test_who_makes_an_arm_creep_for_a_second_is_named_with_distance_and_body() -
 def test_an_arm_does_not_creep_that(state: SeparationState) -> None:
     separation = _crept(1.1)
     separation.record("left", state)
-    assert separation.slow_reason("left") == ""
+    assert separation.slow_reason("left", for_s=1.0) == ""
 
 
 def test_an_arm_that_begins_anew_has_not_crept_yet() -> None:
     separation = _crept(1.1)
     separation.begin("left")
-    assert separation.slow_reason("left") == ""
+    assert separation.slow_reason("left", for_s=1.0) == ""
     separation.record("left", _measured(1.2, distance_m=0.6, share=0.1))
-    assert separation.slow_reason("left") == ""
+    assert separation.slow_reason("left", for_s=1.0) == ""
     separation.record("left", _measured(2.3, distance_m=0.6, share=0.1))
-    assert separation.slow_reason("left")
+    assert separation.slow_reason("left", for_s=1.0)
 
 
 def test_nothing_starts_beside_somebody_and_voxels_that_flicker() -> None:

@@ -96,3 +96,17 @@ async def test_who_stays_is_waited_for_until_the_patience_is_over() -> None:
         assert (end.status, cell.told[-1].phase) == (GoalStatus.ABORTED, "waiting")
         waited = "no path is free for 3 s: an obstacle seen by the cameras is 0.08 m from left/panda_hand"
         assert waited in str(end.cause)
+
+
+async def test_an_arm_that_creeps_for_long_looks_for_another_path_ever_more_rarely() -> None:
+    separation = MonitoredSeparation(REST_M)
+    async with fake_cell(separation=separation) as cell:
+        await cell.bus.send_goal(free(THERE), to="left").result()
+        cell.cameras.see(HAND)
+        handle = await cell.begun(free(ACROSS, speed=0.02), after_s=0.1)
+        await _creeps(cell, separation, distance_m=CREEP_M, for_s=20.0)
+        separation.record("left", SeparationState(time_s=cell.bus.clock.now_s(), monitoring=True, distance_m=1.0))
+        end = await handle.result()
+        assert end.result is not None, end.cause
+        assert end.status is GoalStatus.SUCCEEDED
+        assert 2 <= end.result.stops <= 4
