@@ -161,6 +161,8 @@ def cell_names(cell: Cell) -> CellNames:
     links = frozenset(_links(summaries))
     parts, fixtures, people = (frozenset(each) for each in (document.parts, document.fixtures, document.people))
     frames = frozenset(document.frames)
+    # The world shows where the fixtures of a device are; an arm accepts no pose in what moves.
+    moved = frozenset(axis.body for device in document.devices.values() for axis in device.axes.values())
     detectors = {name: camera.detect for name, camera in document.cameras.items() if camera.detect is not None}
     bases = {f"{name}/{summary.base_link}" for name, summary in summaries.items() if summary is not None}
     tools = {name: _tools(robots[name], summaries[name], kinds) for name in robots}
@@ -179,7 +181,7 @@ def cell_names(cell: Cell) -> CellNames:
         "label": frozenset(
             f"{name}/{detector.labels.get(part, part)}" for name, detector in detectors.items() for part in parts
         ),
-        "frame": links | parts | frames | {_WORLD},
+        "frame": links | parts | frames | moved | {_WORLD},
         "arm_frame": frames | {_WORLD, *bases},
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
