@@ -90,13 +90,18 @@ class FreshLink(Generic[R, C]):
         self._first: asyncio.Future[None] = self._loop.create_future()
 
     async def start(self) -> None:
-        """Connect and return with the first reading.
+        """Connect and return with the first reading; one that fails, or is cancelled, is closed.
 
         Raises:
             RobotError: the device does not answer; the message says where, the hint what to check.
         """
         self._thread.start()
-        await self._first
+        try:
+            await self._first
+        except BaseException:
+            # The thread must not outlive this call.
+            await self.close()
+            raise
 
     async def close(self) -> None:
         """End the thread and disconnect."""

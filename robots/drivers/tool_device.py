@@ -183,8 +183,6 @@ class ToolDevice(ABC, Generic[R, C, P]):
         try:
             await link.start()
         except BaseException as error:
-            # Also when it is cancelled while connecting: the thread must not outlive this call.
-            await link.close()
             self._open = None
             if not isinstance(error, RobotError):
                 raise

@@ -128,11 +128,7 @@ class RwsMonitor:
         link = FreshLink[RwsState, RwsCommand](self._transport, self, timing)
         try:
             await link.start()
-        except BaseException as error:
-            # Also when it is cancelled while connecting: the thread must not outlive this call.
-            await link.close()
-            if not isinstance(error, RobotError):
-                raise
+        except RobotError as error:
             raise RobotError(str(error), where=self._name, hint=error.hint) from error
         self._link = link
 

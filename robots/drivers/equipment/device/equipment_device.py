@@ -148,8 +148,6 @@ class EquipmentDevice:
         try:
             await link.start()
         except BaseException as error:
-            # Also when it is cancelled while connecting: the thread must not outlive this call.
-            await link.close()
             self._link = None
             if not isinstance(error, RobotError):
                 raise
