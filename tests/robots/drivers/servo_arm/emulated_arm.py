@@ -61,6 +61,7 @@ def move(controller: JointController, goal_rad: Array, *, steps: int = 10_000) -
         set_point = set_point + np.clip(goal_rad - set_point, -most, most)
         controller.command(set_point, np.zeros(2))
         reading = read(controller)
-        if np.abs(reading.position_rad - goal_rad).max() < 0.002:
+        # Less than the tenth of a degree that one step on the wire is.
+        if np.abs(reading.position_rad - goal_rad).max() < 0.001:
             break
     return reading
