@@ -21,6 +21,7 @@ from engine.errors import FlexcellError
 from engine.registry import SERVERS, load_factory
 
 ServeEquipment = Callable[..., Awaitable[None]]
+_TIMEOUT_S = 10.0
 
 
 class ConfigurationClient(Protocol):
@@ -111,6 +112,19 @@ def restart(connect: Connect) -> None:
         sys.stdout.write(client.restart() + "\n")
 
 
+@app.command("guide")
+def guide(connect: Connect) -> None:
+    """Show a page in the terminal: the pins as they are, and the configuration to read, change, set and take back.
+
+    `flexcell equipment guide --connect 192.168.1.40:7391`
+
+    It needs `pip install 'flexcell[guide]'`.
+    """
+    host, port = _place(connect)
+    show_guide: Callable[..., None] = load_factory(SERVERS, "equipment_guide")
+    show_guide(host, port, name=_user(), timeout_s=_TIMEOUT_S)
+
+
 @app.command("convert")
 def convert(file: Annotated[Path, typer.Argument(help="File of ReconCycle's raspi_ros.")]) -> None:
     """Print a file of ReconCycle as an equipment document; Python objects in it are read and never made.
@@ -139,8 +153,17 @@ def _ready(place: Mapping[str, object]) -> None:
 
 
 def _connected(address: str) -> AbstractContextManager[ConfigurationClient]:
+    host, port = _place(address)
+    connected: Any = load_factory(SERVERS, "equipment_client")
+    return connected(host, port, name=_user(), timeout_s=_TIMEOUT_S)
+
+
+def _place(address: str) -> tuple[str, int]:
     host, colon, port = address.rpartition(":")
     if not colon or not port.isdecimal() or int(port) > 65535:
         raise FlexcellError(f"`{address}` is no address", where="--connect", hint="give HOST:PORT")
-    connected: Any = load_factory(SERVERS, "equipment_client")
-    return connected(host, int(port), name=f"{getpass.getuser()} on {socket.gethostname()}", timeout_s=10.0)
+    return host, int(port)
+
+
+def _user() -> str:
+    return f"{getpass.getuser()} on {socket.gethostname()}"
