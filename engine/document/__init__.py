@@ -28,6 +28,7 @@ from engine.document.cell_perception import (
 from engine.document.docking import cell_as_docked, cell_at_start, docks_at_start, modules_below
 from engine.document.duration import seconds
 from engine.document.expression.expression import Template, compile_template
+from engine.document.hexapods import HexapodSpec, beyond_limits, leg_lengths_m, path_beyond_limits
 from engine.document.loader import (
     BehaviorSurvey,
     CircularReference,
@@ -78,6 +79,7 @@ __all__ = [
     "Fixture",
     "ForEachSpec",
     "GuardSpec",
+    "HexapodSpec",
     "Jitter",
     "KeySignature",
     "MachineSpec",
@@ -103,12 +105,14 @@ __all__ = [
     "UnknownSpacePolicy",
     "any_value",
     "arm_reach_m",
+    "beyond_limits",
     "bind_parameters",
     "cell_as_docked",
     "cell_at_start",
     "compile_template",
     "decode_document",
     "docks_at_start",
+    "leg_lengths_m",
     "load_behavior",
     "load_cell",
     "load_module",
@@ -116,6 +120,7 @@ __all__ = [
     "modules_below",
     "parse_behavior",
     "parse_source",
+    "path_beyond_limits",
     "read_behavior",
     "read_signature",
     "seconds",

@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture
 from engine.document.duration import Duration
+from engine.document.hexapods.hexapod_spec import HexapodSpec, placed_hexapod
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -97,10 +98,14 @@ class DeviceInterlock(StrictModel, frozen=True, kw_only=True):
 
 
 class DeviceSpec(StrictModel, frozen=True, kw_only=True):
-    """A device: its axes, sensors, positions and interlocks. One without axes only switches outputs: a lamp."""
+    """A device: its axes, sensors, positions and interlocks. One without axes only switches outputs: a lamp.
+
+    With a `hexapod` it has the brakes of a passive platform, and the axes on it, such as clamps.
+    """
 
     description: str = ""
     axes: dict[Name, DeviceAxis] = {}
+    hexapod: HexapodSpec | None = None
     sensors: dict[Name, DeviceSensor] = {}
     positions: Annotated[dict[Name, DevicePosition], Meta(min_length=1)]
     interlocks: tuple[DeviceInterlock, ...] = ()
@@ -110,6 +115,12 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
         """The outputs that its steps set, in their order."""
         steps = (step for position in self.positions.values() for step in position.steps)
         return tuple(dict.fromkeys(name for step in steps for name in step.set or {}))
+
+    @property
+    def moved_fixtures(self) -> tuple[str, ...]:
+        """The fixtures that move with it: those of its axes, and the platform with what it carries."""
+        axes = tuple(axis.body for axis in self.axes.values())
+        return (*axes, *(self.hexapod.bodies if self.hexapod is not None else ()))
 
     @property
     def air_sensor(self) -> str:
@@ -124,7 +135,8 @@ def placed_device(device: DeviceSpec, named: Callable[[str], str]) -> DeviceSpec
         for name, axis in device.axes.items()
     }
     interlocks = tuple(replace(one, device=named(one.device)) for one in device.interlocks)
-    return replace(device, axes=axes, interlocks=interlocks)
+    hexapod = placed_hexapod(device.hexapod, named) if device.hexapod is not None else None
+    return replace(device, axes=axes, hexapod=hexapod, interlocks=interlocks)
 
 
 def require_devices(

@@ -44,25 +44,25 @@ def _mesh(arm: str, index: int, visual: LinkVisual) -> VisualGeometry:
 
 
 def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
-    pose = fixture.pose
+    pose = fixture.pose if not fixture.moves else Pose(xyz=(0.0, 0.0, 0.0))
+    frame = fixture.name if fixture.moves else "world"
     if fixture.shape != "tray":
         kind, size = _shape(fixture.shape, fixture.size_m)
-        at = pose if fixture.axis is None else Pose(xyz=(0.0, 0.0, 0.0))
         return [
             VisualGeometry(
                 name=fixture.name,
-                frame="world" if fixture.axis is None else fixture.name,
+                frame=frame,
                 kind=kind,
                 size_m=size,
                 rgba=fixture.rgba,
-                xyz=at.xyz,
-                xyzw=at.xyzw,
+                xyz=pose.xyz,
+                xyzw=pose.xyzw,
             )
         ]
     return [
         VisualGeometry(
             name=f"{fixture.name}/{index}",
-            frame="world",
+            frame=frame,
             kind="box",
             size_m=size,
             rgba=fixture.rgba,

@@ -59,10 +59,14 @@ class WorldPublisher:
         away = frozenset(summary.parts) - present
         self._rows = [row for row, name in enumerate(summary.frames) if name not in away]
         self._frames = (*(summary.frames[row] for row in self._rows), *scene.frames)
-        self._fixed_xyz = tuple(pose.xyz for pose in scene.frames.values())
-        self._fixed_xyzw = tuple(pose.xyzw for pose in scene.frames.values())
+        self._named = scene.frames
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in present]
         self._scene_topic.publish(self._describe(scene))
+        self.publish_frames()
+
+    def take_frames(self, frames: dict[str, Pose]) -> None:
+        """Publish the same named frames where they are now."""
+        self._named = frames
         self.publish_frames()
 
     @property
@@ -101,8 +105,8 @@ class WorldPublisher:
         return FramePoses(
             time_s=snapshot.time_s,
             names=self._frames,
-            xyz=tuple(xyz[row] for row in self._rows) + self._fixed_xyz,
-            xyzw=tuple(xyzw[row] for row in self._rows) + self._fixed_xyzw,
+            xyz=(*(xyz[row] for row in self._rows), *(pose.xyz for pose in self._named.values())),
+            xyzw=(*(xyzw[row] for row in self._rows), *(pose.xyzw for pose in self._named.values())),
         )
 
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
