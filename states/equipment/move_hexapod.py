@@ -10,7 +10,7 @@ from msgspec import Meta
 from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import Cause, SkillFailed
 from engine.messages import Pose
-from engine.messages.pose_algebra import compose_poses, invert_pose
+from engine.messages.pose_algebra import compose_poses, interpolate_poses, invert_pose
 from engine.skills import device_moves
 from engine.skills.collision_options import CollisionOptions
 from engine.skills.hexapods import HexapodMove, PlanHexapodMove, ReadHexapod
@@ -22,6 +22,8 @@ from states.motion.line_duration import line_duration_s
 from states.motion.motion_target import RobotName
 
 _CORRECTION_S = 0.5
+# Legs hold back a platform that went too far, by twice their friction: each correction ends before the goal.
+_GAIN = 0.9
 
 
 class MoveHexapod(State, frozen=True, kw_only=True):
@@ -49,6 +51,9 @@ class MoveHexapod(State, frozen=True, kw_only=True):
         float, Meta(gt=0, le=0.2, description="Maximum speed of the tool", extra_json_schema={"unit": "m/s"})
     ] = 0.03
     by: Annotated[Literal["arm", "cell"], Meta(description="What measures where the platform is")] = "arm"
+    settle_s: Annotated[
+        float, Meta(ge=0, le=10, description="Time at rest before it is measured", extra_json_schema={"unit": "s"})
+    ] = 0.4
     corrections: Annotated[int, Meta(ge=0, le=20, description="Maximum number of corrections")] = 5
     tolerance_m: PositionTolerance = 0.0005
     tolerance_rad: AngleTolerance = 0.0035
@@ -102,10 +107,12 @@ class MoveHexapod(State, frozen=True, kw_only=True):
             if end.status != "succeeded":
                 what = f"{self.robot} did not move the platform"
                 return goal_cause(what, line, end, to=self.robot, where=ctx.path, kind=self.state_name)
+            await ctx.clock.sleep(self.settle_s)
             measured = await self._measured(ctx, held)
             if HexapodError.between(measured, move.platform).within(self.tolerance_m / 5, self.tolerance_rad / 5):
                 break
-            start, target = target, compose_poses(compose_poses(move.platform, invert_pose(measured)), target)
+            nearer = interpolate_poses(measured, move.platform, _GAIN)
+            start, target = target, compose_poses(compose_poses(nearer, invert_pose(measured)), target)
         return None
 
     async def _switch(self, ctx: Context, position: str) -> Cause | None:

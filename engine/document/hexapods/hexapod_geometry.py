@@ -7,13 +7,7 @@ from collections.abc import Iterator
 
 from engine.document.hexapods.hexapod_spec import HexapodSpec
 from engine.messages import Pose, Vector3
-from engine.messages.pose_algebra import (
-    compose_poses,
-    compose_rotations,
-    invert_pose,
-    rotate_vector,
-    rotation_vector_between,
-)
+from engine.messages.pose_algebra import compose_poses, interpolate_poses, invert_pose, rotate_vector
 
 PATH_STEPS = 50
 """A straight path is looked at in so many steps."""
@@ -51,24 +45,13 @@ def path_beyond_limits(hexapod: HexapodSpec, start: Pose, end: Pose, *, tool: Po
         tool: The pose of the tool in the frame of the platform, which it holds.
     """
     first, last = compose_poses(start, tool), compose_poses(end, tool)
-    turn = rotation_vector_between(first.xyzw, last.xyzw)
     back = invert_pose(tool)
     for step in range(1, PATH_STEPS + 1):
         share = step / PATH_STEPS
-        x, y, z = (a + share * (b - a) for a, b in zip(first.xyz, last.xyz, strict=True))
-        held = Pose(xyz=(x, y, z), xyzw=compose_rotations(_quaternion(turn, share), first.xyzw))
-        found = beyond_limits(hexapod, compose_poses(held, back))
+        found = beyond_limits(hexapod, compose_poses(interpolate_poses(first, last, share), back))
         if found:
             return found if step == PATH_STEPS else f"after {100 * share:.0f} % of the line: {found}"
     return ""
-
-
-def _quaternion(turn: Vector3, share: float) -> tuple[float, float, float, float]:
-    angle = math.hypot(*turn)
-    if angle < 1e-12:
-        return (0.0, 0.0, 0.0, 1.0)
-    sine = math.sin(share * angle / 2.0) / angle
-    return (turn[0] * sine, turn[1] * sine, turn[2] * sine, math.cos(share * angle / 2.0))
 
 
 def _beyond(hexapod: HexapodSpec, pose: Pose) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from engine.document.cell_bodies import Fixture
 from engine.document.cell_devices import DeviceSpec
@@ -41,11 +42,12 @@ def require_hexapods(
     platforms: dict[str, str] = {}
     for name, hexapod in hexapods.items():
         path: DataPath = ("devices", name, "hexapod")
-        for inner, message, hint in (
-            *_name_problems(hexapod, devices[name], fixtures, frames),
-            *_body_problems(name, hexapod, fixtures, {**moved, **platforms}),
-            *_pose_problems(hexapod, poses),
-            *_carry_problems(hexapod, fixtures, frames),
+        # One after the other: each set of rules counts on those before it.
+        for inner, message, hint in chain(
+            _name_problems(hexapod, devices[name], fixtures, frames),
+            _body_problems(name, hexapod, fixtures, {**moved, **platforms}),
+            _pose_problems(hexapod, poses),
+            _carry_problems(hexapod, fixtures, frames),
         ):
             raise DocumentError(message, where=source.position((*path, *inner)), hint=hint)
         platforms |= dict.fromkeys(hexapod.bodies, f"the hexapod `{name}`")
@@ -66,6 +68,8 @@ def _name_problems(
     for path, fixture in named:
         if fixture not in fixtures:
             yield path, f"there is no fixture `{fixture}`", did_you_mean(fixture, fixtures)
+    if hexapod.base == hexapod.platform:
+        yield ("platform",), "base and platform are the same fixture", "name the plate that moves"
     if hexapod.grip not in frames:
         yield ("grip",), f"there is no frame `{hexapod.grip}`", did_you_mean(hexapod.grip, frames)
     elif not _stands_on(hexapod.grip, hexapod.platform, fixtures, frames):
@@ -81,8 +85,6 @@ def _name_problems(
 def _body_problems(
     name: str, hexapod: HexapodSpec, fixtures: Mapping[str, Fixture], moved: Mapping[str, str]
 ) -> Iterator[_Problem]:
-    if hexapod.base == hexapod.platform:
-        yield ("platform",), "base and platform are the same fixture", "name the plate that moves"
     for field, body in (("base", hexapod.base), ("platform", hexapod.platform)):
         if body in moved:
             yield (field,), f"`{body}` is moved by {moved[body]} too", "choose a fixture of its own"
