@@ -58,14 +58,14 @@ class WorldPublisher:
         present = frozenset(part.name for part in scene.parts)
         away = frozenset(summary.parts) - present
         self._rows = [row for row, name in enumerate(summary.frames) if name not in away]
-        self._frames = (*(summary.frames[row] for row in self._rows), *scene.frames)
+        self._bodies = tuple(summary.frames[row] for row in self._rows)
         self._named = scene.frames
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in present]
         self._scene_topic.publish(self._describe(scene))
         self.publish_frames()
 
     def take_frames(self, frames: dict[str, Pose]) -> None:
-        """Publish the same named frames where they are now."""
+        """Publish the named frames where they are now."""
         self._named = frames
         self.publish_frames()
 
@@ -104,7 +104,7 @@ class WorldPublisher:
         xyz, xyzw = snapshot.frames()
         return FramePoses(
             time_s=snapshot.time_s,
-            names=self._frames,
+            names=(*self._bodies, *self._named),
             xyz=(*(xyz[row] for row in self._rows), *(pose.xyz for pose in self._named.values())),
             xyzw=(*(xyzw[row] for row in self._rows), *(pose.xyzw for pose in self._named.values())),
         )
