@@ -13,8 +13,8 @@ from robots.sim.physics.physics import Physics
 class HexapodBrakes:
     """Owned by the simulation; call `step` in each step, when the lengths of the legs are known.
 
-    The lengths at which the springs of legs are without force are part of an image, as controls of motors. How much a
-    leg holds is set anew by who switches the brakes.
+    By how much the spring of each leg is without force at another length than at the start is part of an image, as are
+    the controls of motors. How much a leg holds is set anew by who switches the brakes.
     """
 
     def __init__(self, cell: CellModel, physics: Physics) -> None:
@@ -26,7 +26,7 @@ class HexapodBrakes:
         self._tendons = np.array([physics.tendon_number(leg) for leg in legs], dtype=np.intp)
         holding = [one.holding_n / STIFFNESS_N_M for one in platforms.values() for _ in range(6)]
         self._stretch_m = np.array(holding)
-        physics.motors[self._motors] = physics.tendon_lengths[self._tendons]
+        self._start_m = physics.tendon_lengths[self._tendons].copy()
 
     def brake(self, command: BrakeLegs) -> None:
         """Set the force at which the legs of a platform slip; unknown platforms are ignored."""
@@ -37,5 +37,5 @@ class HexapodBrakes:
         """Let the legs slip that are pulled or pressed too much."""
         if not self._motors.size:
             return
-        lengths, motors = self._physics.tendon_lengths[self._tendons], self._physics.motors
-        motors[self._motors] = np.clip(motors[self._motors], lengths - self._stretch_m, lengths + self._stretch_m)
+        motors, longer_m = self._physics.motors, self._physics.tendon_lengths[self._tendons] - self._start_m
+        motors[self._motors] = np.clip(motors[self._motors], longer_m - self._stretch_m, longer_m + self._stretch_m)

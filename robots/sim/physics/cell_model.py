@@ -107,11 +107,12 @@ def cell_spec(scene: SimScene) -> Any:
         CellError: a robot model is unknown, or a shape is invalid.
     """
     spec, errors = _empty_world(scene), PlantErrors(scene)
-    platforms = {fixture.name: fixture for fixture in scene.fixtures if fixture.hexapod is not None}
+    known = {fixture.name: fixture for fixture in scene.fixtures}
     for fixture in sorted((*scene.fixtures, *scene.unknown_fixtures), key=lambda one: bool(one.on)):
-        _add_fixture(spec, fixture, platforms)
-    for platform in platforms.values():
-        add_legs(spec, platform)
+        _add_fixture(spec, fixture, known)
+    for fixture in scene.fixtures:
+        if fixture.hexapod is not None:
+            add_legs(spec, fixture, known[fixture.hexapod.base])
     for part in (*scene.parts, *scene.unknown_parts):
         _add_part(spec, part, errors)
     for arm in scene.arms:
@@ -138,10 +139,10 @@ def _wxyz(pose: Pose) -> list[float]:
     return [w, x, y, z]
 
 
-def _add_fixture(spec: Any, fixture: FixtureBody, platforms: Mapping[str, FixtureBody]) -> None:
+def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, FixtureBody]) -> None:
     parent, pose = spec.worldbody, fixture.pose
     if fixture.on:
-        parent, pose = spec.body(fixture.on), place_on(platforms[fixture.on], fixture)
+        parent, pose = spec.body(fixture.on), place_on(fixtures[fixture.on], fixture)
     body = parent.add_body(name=fixture.name, pos=list(pose.xyz), quat=_wxyz(pose))
     if fixture.shape != "tray":
         geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
