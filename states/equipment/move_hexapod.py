@@ -54,7 +54,7 @@ class MoveHexapod(State, frozen=True, kw_only=True):
     settle_s: Annotated[
         float, Meta(ge=0, le=10, description="Time at rest before it is measured", extra_json_schema={"unit": "s"})
     ] = 0.4
-    corrections: Annotated[int, Meta(ge=0, le=20, description="Maximum number of corrections")] = 5
+    corrections: Annotated[int, Meta(ge=0, le=50, description="Maximum number of corrections")] = 10
     tolerance_m: PositionTolerance = 0.0005
     tolerance_rad: AngleTolerance = 0.0035
 
