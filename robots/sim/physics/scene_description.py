@@ -9,6 +9,7 @@ from engine.messages.pose_algebra import compose_poses
 from robots.model.urdf.visual_mesh import LinkVisual, link_visuals
 from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 from robots.sim.physics.cell_model import tray_boxes
+from robots.sim.physics.hexapod_drawing import leg_geometries
 from robots.sim.physics.person_drawing import person_geometries
 
 
@@ -25,6 +26,7 @@ def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescri
     ]
     for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         geometries += _fixture(fixture)
+    geometries += leg_geometries(scene)
     geometries += [_part(part) for part in (*scene.parts, *scene.unknown_parts)]
     geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
     return SceneDescription(geometries=tuple(geometries))
