@@ -15,6 +15,7 @@ from engine.document.cell import (
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
 from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec
+from engine.document.cell_frames import poses_in_world
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -49,7 +50,7 @@ from engine.document.nodes.node_spec import (
     TimeoutSpec,
 )
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
-from engine.document.placement import Placement
+from engine.document.placement import FramedPlacement, Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.simulated_devices import with_simulated_devices
 from engine.document.sweep import SweepDocument
@@ -78,6 +79,7 @@ __all__ = [
     "DocumentSource",
     "Fixture",
     "ForEachSpec",
+    "FramedPlacement",
     "GuardSpec",
     "HexapodSpec",
     "Jitter",
@@ -121,6 +123,7 @@ __all__ = [
     "parse_behavior",
     "parse_source",
     "path_beyond_limits",
+    "poses_in_world",
     "read_behavior",
     "read_signature",
     "seconds",

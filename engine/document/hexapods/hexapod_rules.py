@@ -37,7 +37,7 @@ def require_hexapods(
     hexapods = {name: device.hexapod for name, device in devices.items() if device.hexapod is not None}
     if not hexapods:
         return
-    poses, standing = poses_in_world(frames, fixtures), tuple(uses)
+    poses, used_frames = poses_in_world(frames, fixtures), tuple(uses)
     moved = {axis.body: f"an axis of `{name}`" for name, device in devices.items() for axis in device.axes.values()}
     platforms: dict[str, str] = {}
     for name, hexapod in hexapods.items():
@@ -51,7 +51,7 @@ def require_hexapods(
         ):
             raise DocumentError(message, where=source.position((*path, *inner)), hint=hint)
         platforms |= dict.fromkeys(hexapod.bodies, f"the hexapod `{name}`")
-        for used, frame in standing:
+        for used, frame in used_frames:
             if used[0] not in ("parts", "unknown_bodies") and _stands_on(frame, hexapod.platform, fixtures, frames):
                 raise DocumentError(
                     f"`{used[1]}` stands on the platform of `{name}`, which moves",

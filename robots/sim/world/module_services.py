@@ -9,9 +9,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from engine.bus import SkillBus, Topic
-from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
-from engine.document.cell_frames import poses_in_world
-from engine.document.placement import FramedPlacement
+from engine.document import Cell, FramedPlacement, cell_as_docked, docks_at_start, modules_below, poses_in_world
 from engine.errors import RobotError, SkillFailed
 from engine.messages import Pose
 from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugModule, UnplugModule

@@ -65,7 +65,7 @@ def test_a_third_of_a_turn_about_the_axis_passes_the_lengths_on_by_one_pair(pose
 
 
 @given(pose=poses)
-def test_what_is_beyond_the_limits_is_told_with_leg_and_amount(pose: Pose) -> None:
+def test_what_is_beyond_the_limits_is_named_with_leg_and_amount(pose: Pose) -> None:
     """Just the legs whose lengths are outside of the limits are named, with how far they are."""
     told = {
         int(leg): float(mm) for leg, mm in re.findall(r"leg (\d) would be ([\d.]+) mm", beyond_limits(HEXAPOD, pose))
@@ -80,7 +80,7 @@ def test_what_is_beyond_the_limits_is_told_with_leg_and_amount(pose: Pose) -> No
     assert all(abs(told[leg] - due[leg]) <= 0.051 for leg in due)
 
 
-def test_a_leg_that_leans_too_much_is_told() -> None:
+def test_a_leg_that_leans_too_much_is_named() -> None:
     aside = Pose(xyz=(0.14, 0.0, 0.12))
     assert re.search(r"leg \d would lean [\d.]+° more than 57.3° at the base", beyond_limits(HEXAPOD, aside))
 
