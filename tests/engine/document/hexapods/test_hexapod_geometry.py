@@ -28,12 +28,14 @@ HEXAPOD = HexapodSpec(
 HOME = Pose(xyz=(0.0, 0.0, 0.18))
 HELD = Pose(xyz=(0.0, 0.0, 0.05), xyzw=(1.0, 0.0, 0.0, 0.0))
 
-lengths = st.floats(-0.05, 0.05)
-angles = st.floats(-0.5, 0.5)
-poses = st.builds(
-    lambda x, y, z, a, b, c: Placement(xyz=(x, y, 0.18 + z), rpy=(a, b, c)).pose(),
-    *(lengths, lengths, lengths, angles, angles, angles),
-)
+
+def pose_near_home(x: float, y: float, z: float, a: float, b: float, c: float) -> Pose:
+    """Return a pose by how far it is from the middle, and how much it is turned."""
+    return Placement(xyz=(x, y, 0.18 + z), rpy=(a, b, c)).pose()
+
+
+lengths, angles = st.floats(-0.05, 0.05), st.floats(-0.5, 0.5)
+poses = st.builds(pose_near_home, lengths, lengths, lengths, angles, angles, angles)
 
 
 def test_all_legs_of_a_level_platform_are_alike() -> None:

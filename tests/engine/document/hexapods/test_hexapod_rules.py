@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from engine.document.cell import Cell, load_cell
-from engine.errors import DocumentError
+from engine.errors import DocumentError, Position
 
 MODULE = """\
 flexcell: 1
@@ -87,8 +87,9 @@ def test_what_a_hexapod_names_has_its_name_in_the_cell(tmp_path: Path) -> None:
 def test_what_cannot_be_is_refused_at_its_place(tmp_path: Path, old: str, new: str, message: str, line: int) -> None:
     with pytest.raises(DocumentError, match=message) as raised:
         jig(tmp_path, (old, new))
-    assert raised.value.where is not None
-    assert (Path(raised.value.where.file).name, raised.value.where.line) == ("module.yaml", line)
+    where = raised.value.where
+    assert isinstance(where, Position)
+    assert (Path(where.file).name, where.line) == ("module.yaml", line)
 
 
 def test_a_camera_does_not_stand_on_a_platform(tmp_path: Path) -> None:
