@@ -10,7 +10,9 @@ import argparse
 import json
 import math
 import tempfile
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -55,8 +57,10 @@ def cell_with(realism: RealismName) -> Cell:
     return Cell(document=document, file=cell.file, source=cell.source, modules=cell.modules, carried=cell.carried)
 
 
-async def approaches(realism: RealismName, by: str, seed: int, folder: Path) -> list[Approach]:
-    """Move both hexapods to all of their poses."""
+async def approaches(
+    realism: RealismName, by: str, seed: int, folder: Path, *, done_one: Callable[[Approach], None]
+) -> list[Approach]:
+    """Move both hexapods to all of their poses; `done_one` is called with each."""
     done: list[Approach] = []
     plan = new_plan(load_behavior(BEHAVIORS / "hexapods" / "reconfigure.yaml"), load_states())
     async with OpenCell(cell_with(realism), seed=seed, store_path=str(folder / "store.db")) as cell:
@@ -86,9 +90,17 @@ async def approaches(realism: RealismName, by: str, seed: int, folder: Path) -> 
                     error_deg=math.degrees(angle_between_rad(at.platform.xyzw, at.target.xyzw)),
                 )
             )
+            done_one(done[-1])
             if outcome in (None, "failed", "loose"):
                 break  # the arm still holds it
     return done
+
+
+def write(file: Path | None, approach: Approach) -> None:
+    """Append an approach to a file, if there is one."""
+    if file is not None:
+        with file.open("a", encoding="utf-8") as lines:
+            lines.write(json.dumps(asdict(approach)) + "\n")
 
 
 def row(done: list[Approach]) -> str:
@@ -114,10 +126,9 @@ def main() -> None:
             done: list[Approach] = []
             for seed in range(1, 2 if realism == "ideal" else options.seeds + 1):
                 with tempfile.TemporaryDirectory() as folder:
-                    done += run_virtual(approaches(realism, by, seed, Path(folder)))
-                if options.json is not None:
-                    with options.json.open("a", encoding="utf-8") as file:
-                        file.writelines(json.dumps(asdict(each)) + "\n" for each in done if each.seed == seed)
+                    done += run_virtual(
+                        approaches(realism, by, seed, Path(folder), done_one=partial(write, options.json))
+                    )
             print(row(done), flush=True)
 
 
