@@ -19,7 +19,9 @@ from states.cell.reach import Reach
 from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
 from states.equipment.check_device import CheckDevice
+from states.equipment.check_hexapod import CheckHexapod
 from states.equipment.move_device import MoveDevice
+from states.equipment.move_hexapod import MoveHexapod
 from states.flow.decide import Decide
 from states.flow.log import Log
 from states.flow.set_value import SetValue
@@ -77,6 +79,7 @@ _STATES: tuple[type[State], ...] = (
     CallService,
     Check,
     CheckDevice,
+    CheckHexapod,
     CheckHeld,
     CheckMessage,
     Decide,
@@ -102,6 +105,7 @@ _STATES: tuple[type[State], ...] = (
     Log,
     Move,
     MoveDevice,
+    MoveHexapod,
     MoveFree,
     MoveJoints,
     MoveLinear,

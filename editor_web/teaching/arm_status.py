@@ -9,7 +9,7 @@ from msgspec.structs import asdict
 from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
 from engine.cell import tool_kinds
 from engine.errors import FlexcellError
-from engine.messages import FramePoses, JointState, Message, RobotDescription
+from engine.messages import DRAWN_ONLY, FramePoses, JointState, Message, RobotDescription
 from engine.project import Session
 from engine.skill import activity_words
 from engine.skills.arm_control import ArmStatus
@@ -53,7 +53,7 @@ class ArmStatusReader:
         return ArmInfoFrame(
             arms=tuple(cards),
             can_push="cell/push_body" in skills,
-            frames=tuple(sorted(frames.names)) if isinstance(frames, FramePoses) else (),
+            frames=_aimed_at(frames) if isinstance(frames, FramePoses) else (),
         )
 
     async def changed(self) -> dict[str, ArmLive]:
@@ -110,3 +110,7 @@ class ArmStatusReader:
 
 def _still(before: tuple[float, ...], now: tuple[float, ...]) -> bool:
     return len(before) == len(now) and all(abs(a - b) < _STILL_RAD for a, b in zip(before, now, strict=True))
+
+
+def _aimed_at(frames: FramePoses) -> tuple[str, ...]:
+    return tuple(sorted(name for name in frames.names if DRAWN_ONLY not in name))

@@ -25,15 +25,16 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
-    "body", "obstacle", "scene_part", "device", "position", "module", "connector", "planner", "topic", "bus_topic",
-    "skill", "controller", "equipment",
+    "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector", "planner", "topic",
+    "bus_topic", "skill", "controller", "equipment",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
-(`vice/closed`) to a device. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of the cell's view;
-those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the planning scene, to
-which behaviors add. `topic` is one that the cell document declares. `controller` is a robot or `equipment`: both have
-outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
+(`vice/closed`) and `hexapod_pose` to a device. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
+of the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
+planning scene, to which behaviors add. `topic` is one that the cell document declares. `controller` is a robot or
+`equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell
+knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -41,8 +42,10 @@ _WORDS: Mapping[str, str] = {
     "body": "body",
     "scene_part": "part",
     "controller": "robot or equipment",
+    "hexapod_pose": "pose",
 }
-_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position"))
+_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position", "hexapod_pose"))
+_BELOW_DEVICES = frozenset[CellNameKind](("position", "hexapod_pose"))
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
 
@@ -74,7 +77,7 @@ class CellNames:
         """Return the message for a name that the cell does not have."""
         owner, _, below = name.partition("/")
         if kind in _OWNED:
-            owner, _, below = name.rpartition("/") if kind == "position" else (owner, "", below)
+            owner, _, below = name.rpartition("/") if kind in _BELOW_DEVICES else (owner, "", below)
             return f"`{owner}` of the cell {self.cell} has no {kind} `{below}`"
         return f"the cell {self.cell} has no {_word(kind)} `{name}`"
 
@@ -91,7 +94,7 @@ class CellNames:
             return f"`{name}` is {'' if other == 'equipment' else 'a '}{_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
         if kind in _OWNED:
-            owner, _, below = name.rpartition("/") if kind == "position" else name.partition("/")
+            owner, _, below = name.rpartition("/") if kind in _BELOW_DEVICES else name.partition("/")
             return did_you_mean(below, {each[len(owner) + 1 :] for each in known if each.startswith(f"{owner}/")})
         return did_you_mean(name, known)
 
@@ -162,7 +165,7 @@ def cell_names(cell: Cell) -> CellNames:
     parts, fixtures, people = (frozenset(each) for each in (document.parts, document.fixtures, document.people))
     frames = frozenset(document.frames)
     # The world shows where the fixtures of a device are; an arm accepts no pose in what moves.
-    moved = frozenset(axis.body for device in document.devices.values() for axis in device.axes.values())
+    moved = frozenset(body for device in document.devices.values() for body in device.moved_fixtures)
     detectors = {name: camera.detect for name, camera in document.cameras.items() if camera.detect is not None}
     bases = {f"{name}/{summary.base_link}" for name, summary in summaries.items() if summary is not None}
     tools = {name: _tools(robots[name], summaries[name], kinds) for name in robots}
@@ -189,6 +192,11 @@ def cell_names(cell: Cell) -> CellNames:
         "device": frozenset(document.devices),
         "position": frozenset(
             f"{name}/{position}" for name, device in document.devices.items() for position in device.positions
+        ),
+        "hexapod_pose": frozenset(
+            f"{name}/{pose}"
+            for name, device in document.devices.items()
+            for pose in (device.hexapod.poses if device.hexapod is not None else ())
         ),
         "module": frozenset(document.modules),
         "connector": frozenset(document.connectors),

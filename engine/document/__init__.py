@@ -15,6 +15,7 @@ from engine.document.cell import (
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
 from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec
+from engine.document.cell_frames import poses_in_world
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -28,6 +29,7 @@ from engine.document.cell_perception import (
 from engine.document.docking import cell_as_docked, cell_at_start, docks_at_start, modules_below
 from engine.document.duration import seconds
 from engine.document.expression.expression import Template, compile_template
+from engine.document.hexapods import HexapodSpec, beyond_limits, leg_lengths_m, path_beyond_limits
 from engine.document.loader import (
     BehaviorSurvey,
     CircularReference,
@@ -48,7 +50,7 @@ from engine.document.nodes.node_spec import (
     TimeoutSpec,
 )
 from engine.document.parameter_spec import ParameterSpec, any_value, bind_parameters
-from engine.document.placement import Placement
+from engine.document.placement import FramedPlacement, Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.simulated_devices import with_simulated_devices
 from engine.document.sweep import SweepDocument
@@ -77,7 +79,9 @@ __all__ = [
     "DocumentSource",
     "Fixture",
     "ForEachSpec",
+    "FramedPlacement",
     "GuardSpec",
+    "HexapodSpec",
     "Jitter",
     "KeySignature",
     "MachineSpec",
@@ -103,12 +107,14 @@ __all__ = [
     "UnknownSpacePolicy",
     "any_value",
     "arm_reach_m",
+    "beyond_limits",
     "bind_parameters",
     "cell_as_docked",
     "cell_at_start",
     "compile_template",
     "decode_document",
     "docks_at_start",
+    "leg_lengths_m",
     "load_behavior",
     "load_cell",
     "load_module",
@@ -116,6 +122,8 @@ __all__ = [
     "modules_below",
     "parse_behavior",
     "parse_source",
+    "path_beyond_limits",
+    "poses_in_world",
     "read_behavior",
     "read_signature",
     "seconds",

@@ -31,6 +31,7 @@ from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, req
 from engine.document.device_pins import require_device_pins
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
+from engine.document.hexapods.hexapod_rules import require_hexapods
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name, Placement
@@ -253,6 +254,8 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
+    uses = document.uses_of_frames()
+    require_hexapods(document.devices, source, fixtures=document.fixtures, frames=document.frames, uses=uses)
     carried = _items_on_modules(written, document, source, modules) if modules else {}
     pins = load_pins(document.equipment, source, folder=file.parent, taken=_namespaces(document))
     require_device_pins(

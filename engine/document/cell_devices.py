@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture
 from engine.document.duration import Duration
+from engine.document.hexapods.hexapod_spec import HexapodSpec, placed_hexapod
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -101,11 +102,13 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
 
     With `equipment`, its outputs and sensors are the pins of that equipment with the same names. A module does not name
     equipment: the cell does that for all devices of the module.
+    With a `hexapod` it has the brakes of a passive platform, and the axes on it, such as clamps.
     """
 
     description: str = ""
     equipment: Annotated[Name | None, Meta(description="Equipment of the cell on whose pins it is")] = None
     axes: dict[Name, DeviceAxis] = {}
+    hexapod: HexapodSpec | None = None
     sensors: dict[Name, DeviceSensor] = {}
     positions: Annotated[dict[Name, DevicePosition], Meta(min_length=1)]
     interlocks: tuple[DeviceInterlock, ...] = ()
@@ -115,6 +118,12 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
         """The outputs that its steps set, in their order."""
         steps = (step for position in self.positions.values() for step in position.steps)
         return tuple(dict.fromkeys(name for step in steps for name in step.set or {}))
+
+    @property
+    def moved_fixtures(self) -> tuple[str, ...]:
+        """The fixtures that move with it: those of its axes, and the platform with what it carries."""
+        axes = tuple(axis.body for axis in self.axes.values())
+        return (*axes, *(self.hexapod.bodies if self.hexapod is not None else ()))
 
     @property
     def air_sensor(self) -> str:
@@ -129,7 +138,8 @@ def placed_device(device: DeviceSpec, named: Callable[[str], str], *, equipment:
         for name, axis in device.axes.items()
     }
     interlocks = tuple(replace(one, device=named(one.device)) for one in device.interlocks)
-    return replace(device, axes=axes, interlocks=interlocks, equipment=equipment)
+    hexapod = placed_hexapod(device.hexapod, named) if device.hexapod is not None else None
+    return replace(device, axes=axes, hexapod=hexapod, interlocks=interlocks, equipment=equipment)
 
 
 def require_devices(

@@ -6,6 +6,7 @@ those who use them.
 """
 
 from engine.messages.geometry import (
+    DRAWN_ONLY,
     FramePoses,
     Message,
     PartPoses,
@@ -27,6 +28,7 @@ from engine.messages.robot_states import (
 from engine.messages.scene import SceneDescription, VisualGeometry
 
 __all__ = [
+    "DRAWN_ONLY",
     "ExternalTorque",
     "FramePoses",
     "GripperState",

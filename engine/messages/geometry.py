@@ -34,6 +34,10 @@ class Wrench(Message, frozen=True, kw_only=True):
     frame: str
 
 
+DRAWN_ONLY = "~"
+"""Is in the name of a frame in which something is drawn, and which nobody aims at."""
+
+
 class FramePoses(Message, frozen=True, kw_only=True):
     """World poses of all moving frames and of the named ones at one instant: row i is names[i], xyz and xyzw."""
 

@@ -52,6 +52,16 @@ def invert_pose(pose: Pose) -> Pose:
     return Pose(xyz=(-a, -b, -c), xyzw=inverse, frame=pose.frame)
 
 
+def interpolate_poses(start: Pose, end: Pose, share: float) -> Pose:
+    """Return the pose at a share of the straight line between two poses of one frame, with SLERP."""
+    x, y, z = (a + share * (b - a) for a, b in zip(start.xyz, end.xyz, strict=True))
+    turn = rotation_vector_between(start.xyzw, end.xyzw)
+    angle = math.hypot(*turn)
+    sine = math.sin(share * angle / 2.0) / angle if angle > _ZERO_ROTATION else 0.0
+    part = (turn[0] * sine, turn[1] * sine, turn[2] * sine, math.cos(share * angle / 2.0))
+    return Pose(xyz=(x, y, z), xyzw=compose_rotations(part, start.xyzw), frame=start.frame)
+
+
 def offset_along(direction: Vector3, distance_m: float) -> Vector3:
     """Return the offset of length `distance_m` along a direction of any non-zero length."""
     length = math.hypot(*direction)

@@ -1,33 +1,35 @@
-"""The devices of a simulated cell: their valves, air and faults, and the sensors that follow the physics."""
+"""The devices of a simulated cell on the bus, and where what they move is for planners, cameras and frames."""
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Self
 
 import msgspec
-import numpy as np
 
-from engine.bus import Holder, SkillBus
+from engine.bus import SkillBus
 from engine.clock import Clock
-from engine.document import Cell, DeviceAxis, DeviceSpec
+from engine.document import Cell
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
 from engine.skills.device_moves import DeviceFault, DeviceReading, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer, known_at
+from robots.devices.hexapod_server import HexapodServer
 from robots.devices.pins_of_simulation import SimulatedWiring
+from robots.devices.simulated_device import SimulatedDevice
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
 from robots.scene.sim_scene import SimScene
-from robots.sim.commands.world_commands import DriveAxis
 from robots.sim.world.sim_world import SimWorld
 
-# A body that has moved by so much, in metres, is told to planners.
-_MOVED_M = 0.001
-_BEFORE_RAD = 0.5
+# A body that has moved by so much, in metres, is told to planners; frames follow what is smaller, too.
+_MOVED_M, _FRAME_MOVED_M = 0.001, 2e-5
+# How often platforms are looked at: an arm or a push moves them, and no device is told to.
+_FOLLOW_S = 0.1
 
 
 class _PortMemo(msgspec.Struct, frozen=True, kw_only=True):
@@ -36,74 +38,8 @@ class _PortMemo(msgspec.Struct, frozen=True, kw_only=True):
     air: bool
     stuck: tuple[str, ...]
     wrong: dict[str, bool]
+    slipping: bool = False
     server: DeviceMemo
-
-
-class SimulatedDevice:
-    """Implements `DevicePort` on a simulated world; `air`, `stuck` and `wrong` are its faults."""
-
-    def __init__(self, device: DeviceSpec, world: SimWorld) -> None:
-        self._device = device
-        self._world = world
-        self.outputs: dict[str, bool] = dict.fromkeys(device.outputs, False)
-        self.pressed: dict[str, float] = dict.fromkeys(device.axes, 0.0)
-        self.air = True
-        self.stuck: set[str] = set()
-        self.wrong: dict[str, bool] = {}
-
-    async def set_output(self, name: str, *, on: bool, holder: Holder) -> None:
-        """Turn an output on or off from the next step on."""
-        del holder
-        self.take_outputs({name: on})
-
-    def take_outputs(self, values: Mapping[str, bool]) -> None:
-        """Have outputs from the next step on; names of others are left out."""
-        self.outputs |= {name: on for name, on in values.items() if name in self.outputs}
-        self.drive()
-
-    @property
-    def axes(self) -> Mapping[str, float]:
-        """The places of the axes in the world, in m or rad."""
-        return {name: self._place(axis) for name, axis in self._device.axes.items()}
-
-    @property
-    def sensors(self) -> Mapping[str, bool]:
-        """What the sensors say."""
-        axes = self.axes
-        true = {
-            name: self.air if sensor.axis is None else sensor.is_on(axes[sensor.axis])
-            for name, sensor in self._device.sensors.items()
-        }
-        return true | self.wrong
-
-    def drive(self) -> None:
-        """Send what presses each axis to the world."""
-        for name, axis in self._device.axes.items():
-            if self.air:
-                self.pressed[name] = _direction(axis, self.outputs)
-            elif not axis.self_holding:
-                self.pressed[name] = 0.0
-            locked = name in self.stuck
-            force = 0.0 if locked else self.pressed[name]
-            self._world.host.send(DriveAxis(fixture=axis.body, direction=force, locked=locked))
-
-    def pose(self, axis: DeviceAxis) -> Pose:
-        """Return the pose of a moved fixture in the world."""
-        xyz, xyzw = self._world.measured().frames()
-        row = self._world.host.summary.frames.index(axis.body)
-        return Pose(xyz=xyz[row], xyzw=xyzw[row])
-
-    def _place(self, axis: DeviceAxis) -> float:
-        home = self._world.modules.home_of(axis.body)
-        if home is None:
-            raise RobotError(f"{axis.body} is not in the cell", hint="plug its module first")
-        moved = RigidTransform.from_pose(home).inverse().then(RigidTransform.from_pose(self.pose(axis)))
-        along = np.array(axis.along) / np.linalg.norm(axis.along)
-        if axis.joint == "slide":
-            return float(moved.xyz @ along)
-        angle = float(2.0 * np.arctan2(moved.xyzw[:3] @ along, moved.xyzw[3]))
-        # From a little before 0 on: an axis rests a little before its end.
-        return (angle + _BEFORE_RAD) % (2.0 * np.pi) - _BEFORE_RAD
 
 
 class SimulatedDevices:
@@ -122,8 +58,14 @@ class SimulatedDevices:
     def __init__(self, cell: Cell, world: SimWorld, *, clock: Clock) -> None:
         self._world = world
         self._cell = cell.document
+        self._clock = clock
         self._devices = cell.document.devices
-        self._ports = {name: SimulatedDevice(device, world) for name, device in self._devices.items()}
+        hexapods = {name: one.hexapod for name, one in self._devices.items() if one.hexapod is not None}
+        platforms = {body: one.platform for one in hexapods.values() for body in one.carries}
+        self._ports = {
+            name: SimulatedDevice(device, world, platforms=platforms) for name, device in self._devices.items()
+        }
+        self._hexapods = [HexapodServer(name, one, pose_of=self._ports[name].pose) for name, one in hexapods.items()]
         self._servers = {
             name: DeviceServer(
                 name, device, self._ports[name], clock=clock, is_at=self._is_at, moved=self._publish_poses
@@ -143,14 +85,16 @@ class SimulatedDevices:
         )
         self._bus: SkillBus | None = None
         self._published: dict[str, Pose] = {}
+        self._framed: dict[str, Pose] = {}
+        self._following: asyncio.Task[None] | None = None
         self.status = DeviceStatus.DISCONNECTED
         world.modules.watch(self._modules_changed)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills of each device, and the service that breaks it."""
         self._bus = bus
-        for server in self._servers.values():
-            server.register(bus)
+        for served in (*self._servers.values(), *self._hexapods):
+            served.register(bus)
         for name, device in self._devices.items():
             if device.equipment is None or self._cell.equipment[device.equipment].simulated:
                 bus.advertise_service(SimulateDeviceFault, self._fault_service(name), namespace=name)
@@ -176,6 +120,7 @@ class SimulatedDevices:
                 air=port.air,
                 stuck=tuple(sorted(port.stuck)),
                 wrong=port.wrong,
+                slipping=port.slipping,
                 server=self._servers[name].memo if name in self._servers else DeviceMemo(),
             )
             for name, port in self._ports.items()
@@ -193,7 +138,7 @@ class SimulatedDevices:
                 continue
             port = self._ports[name]
             port.outputs, port.pressed, port.wrong = dict(known.outputs), dict(known.pressed), dict(known.wrong)
-            port.air, port.stuck = known.air, set(known.stuck)
+            port.air, port.stuck, port.slipping = known.air, set(known.stuck), known.slipping
             if name in self._servers:
                 self._servers[name].memo = known.server
         for wiring in self._wirings:
@@ -216,6 +161,8 @@ class SimulatedDevices:
 
     async def __aenter__(self) -> Self:
         self._drive()
+        if self._hexapods:
+            self._following = asyncio.create_task(self._follow(), name="following the platforms of hexapods")
         self.status = DeviceStatus.READY
         return self
 
@@ -225,6 +172,9 @@ class SimulatedDevices:
         await self.stop()
         for wiring in self._wirings:
             await wiring.close()
+        if self._following is not None:
+            self._following.cancel()
+            await asyncio.wait([self._following])
         self.status = DeviceStatus.DISCONNECTED
 
     def _drive(self) -> None:
@@ -236,18 +186,28 @@ class SimulatedDevices:
 
     def _modules_changed(self, _scene: SimScene) -> None:
         """Take note that moved fixtures are published where the cell document places them."""
-        self._published = {}
+        self._published, self._framed = {}, {}
         self._publish_poses()
 
+    async def _follow(self) -> None:
+        """Tell where platforms are that somebody moves."""
+        while True:
+            await self._clock.sleep(_FOLLOW_S)
+            if not self._world.lost_reason:
+                self._publish_poses()
+
     def _publish_poses(self) -> None:
-        """Tell planners and cameras where the moved fixtures are."""
+        """Tell planners and cameras where the moved fixtures are, and where the frames on them."""
         present = {
-            axis.body: port.pose(axis)
-            for name, port in self._ports.items()
-            for axis in self._devices[name].axes.values()
-            if self._world.modules.home_of(axis.body) is not None
+            body: port.pose(body)
+            for port in self._ports.values()
+            for body in port.bodies
+            if self._world.modules.home_of(body) is not None
         }
-        if any(name not in self._published or _differ(pose, self._published[name]) for name, pose in present.items()):
+        if _differ(present, self._framed, by_m=_FRAME_MOVED_M):
+            self._framed = present
+            self._world.modules.frames_moved(present)
+        if _differ(present, self._published, by_m=_MOVED_M):
             self._published = present
             self._world.modules.fixtures_moved(present)
 
@@ -261,6 +221,9 @@ class SimulatedDevices:
             port.air = fault.air
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
+            if not fault.brakes and device.hexapod is None:
+                return SwitchResult(success=False, message=f"{name} has no hexapod, and so no brakes")
+            port.slipping = not fault.brakes
             port.drive()
             if name in self._servers:
                 self._servers[name].publish()
@@ -270,13 +233,12 @@ class SimulatedDevices:
         return break_device
 
 
-def _direction(axis: DeviceAxis, outputs: Mapping[str, bool]) -> float:
-    """Return whether air presses an axis to its stroke, 1, back, -1, or not at all, 0."""
-    if axis.output_back is None:
-        return 1.0 if outputs[axis.output] else -1.0
-    return float(outputs[axis.output]) - float(outputs[axis.output_back])
-
-
-def _differ(one: Pose, other: Pose) -> bool:
-    first, second = RigidTransform.from_pose(one), RigidTransform.from_pose(other)
-    return first.distance_m(second) > _MOVED_M or first.angle_rad(second) > 10.0 * _MOVED_M
+def _differ(present: Mapping[str, Pose], known: Mapping[str, Pose], *, by_m: float) -> bool:
+    """Return whether a pose is new, or has moved by more than a distance, or ten times as many radians."""
+    for name, pose in present.items():
+        if name not in known:
+            return True
+        now, before = RigidTransform.from_pose(pose), RigidTransform.from_pose(known[name])
+        if now.distance_m(before) > by_m or now.angle_rad(before) > 10.0 * by_m:
+            return True
+    return False

@@ -7,11 +7,20 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import CellDocument, Fixture, Person, RobotSpec, UnknownBody
+from engine.document import CellDocument, Fixture, HexapodSpec, Person, RobotSpec, UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose
-from robots.scene.sim_scene import ArmPlacement, AxisBody, FixtureBody, PartBody, PersonBody, Rgba, SimScene
+from robots.scene.sim_scene import (
+    ArmPlacement,
+    AxisBody,
+    FixtureBody,
+    HexapodBody,
+    PartBody,
+    PersonBody,
+    Rgba,
+    SimScene,
+)
 
 Resolve = Callable[[str], Path]
 
@@ -68,7 +77,26 @@ def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
         bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
         for name in axis.against:
             bodies[name] = msgspec.structs.replace(bodies[name], jaw_friction=axis.friction)
+    for hexapod in (device.hexapod for device in document.devices.values()):
+        if hexapod is not None:
+            platform = bodies[hexapod.platform]
+            bodies[hexapod.platform] = msgspec.structs.replace(platform, hexapod=_hexapod(hexapod))
+            for name in hexapod.carries:
+                bodies[name] = msgspec.structs.replace(bodies[name], on=hexapod.platform)
     return tuple(bodies.values())
+
+
+def _hexapod(hexapod: HexapodSpec) -> HexapodBody:
+    return HexapodBody(
+        base=hexapod.base,
+        feet=hexapod.joints_of_base(),
+        joints=hexapod.joints_of_platform(),
+        length_m=hexapod.length_m,
+        mass_kg=hexapod.mass_kg,
+        friction_n=hexapod.friction_n,
+        damping_ns_m=hexapod.damping_ns_m,
+        holding_n=hexapod.holding_n,
+    )
 
 
 def _fixture(name: str, fixture: Fixture) -> FixtureBody:

@@ -72,13 +72,30 @@ class AxisBody(msgspec.Struct, frozen=True, kw_only=True):
     mass_kg: float
 
 
+class HexapodBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The six legs of a passive platform to the fixture `base`; each has its joint in the frame of either plate.
+
+    A leg has its friction between `friction_n`, released, and `holding_n`, braked; `mass_kg` is that of the platform.
+    """
+
+    base: str
+    feet: tuple[Vector3, ...]
+    joints: tuple[Vector3, ...]
+    length_m: tuple[float, float]
+    mass_kg: float
+    friction_n: float
+    damping_ns_m: float
+    holding_n: float
+
+
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
     With `spring_n_m` above 0 it rests on a spring and a damper and yields along its z axis, like foam
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
     `skin_friction` with any other body. With an `axis` it is moved by a device. `jaw_friction` is that of
-    the surface of what a device presses with, or against.
+    the surface of what a device presses with, or against. With a `hexapod` it is a platform on legs; what is `on` a
+    platform is fixed to it, or has its axis on it.
     """
 
     name: str
@@ -92,7 +109,14 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     skin_friction: float = 0.3
     axis: AxisBody | None = None
     jaw_friction: float | None = None
+    hexapod: HexapodBody | None = None
+    on: str = ""
     rgba: Rgba = GREY
+
+    @property
+    def moves(self) -> bool:
+        """Whether its pose changes while the cell is open."""
+        return self.axis is not None or self.hexapod is not None or bool(self.on)
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):

@@ -59,6 +59,13 @@ class DriveAxis(ControlCommand, frozen=True, kw_only=True, tag="drive_axis"):
     locked: bool = False
 
 
+class BrakeLegs(ControlCommand, frozen=True, kw_only=True, tag="brake_legs"):
+    """Let each leg of a platform slip at a force along it from the next step on, in N."""
+
+    platform: str
+    force_n: float
+
+
 class MovePersonHand(ControlCommand, frozen=True, kw_only=True, tag="move_hand"):
     """Move the hand of a person."""
 
@@ -99,6 +106,7 @@ AnyCommand = (
     | ResetFreeParts
     | PushSimBody
     | DriveAxis
+    | BrakeLegs
     | MovePersonHand
     | RestoreWorld
     | ShutDownWorld

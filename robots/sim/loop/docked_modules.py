@@ -118,7 +118,7 @@ class DockedModules:
         module.fixtures.put(pose, place=self._physics.place_fixed)
         for part in arriving:
             self._put(part, pose)
-        bodies = {*module.fixtures.bodies, *(part.body for part in arriving)}
+        bodies = {*module.fixtures.touchable, *(part.body for part in arriving)}
         others = self._physics.near(bodies, within_m=_OVERLAP_M)
         if others:
             self._send_away(module, tuple(arriving))
@@ -128,7 +128,7 @@ class DockedModules:
 
     def _unplug(self, module: _DockedModule, held: frozenset[str]) -> str:
         own = {part.body: part for part in module.parts if not part.is_away}
-        bodies = set(module.fixtures.bodies)
+        bodies = module.fixtures.touchable
         others: dict[int, float] = {}
         while bodies:
             near = self._physics.near(bodies, within_m=_TOUCHING_M)

@@ -15,6 +15,7 @@ from robots.port import Array
 from robots.scene.realism import realism
 from robots.sim.commands.world_commands import (
     AnyCommand,
+    BrakeLegs,
     DriveAxis,
     MirrorArm,
     MirrorPart,
@@ -36,6 +37,7 @@ from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
 from robots.sim.loop.held_parts import HeldParts
+from robots.sim.loop.hexapod_brakes import HexapodBrakes
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
 from robots.sim.loop.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
 from robots.sim.measures.run_measures import RunMeasures
@@ -90,7 +92,7 @@ class Simulation:
             for arm in cell.arms
         }
         self._hands = ExternalPushes(physics)
-        self._axes = DeviceAxes(cell, physics)
+        self._axes, self._legs = DeviceAxes(cell, physics), HexapodBrakes(cell, physics)
         self._held_parts = HeldParts(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
@@ -154,7 +156,7 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
-            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis():
+            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis() | BrakeLegs():
                 self._follow(command)
             case HoldMotion():
                 for device in self._devices():
@@ -185,10 +187,12 @@ class Simulation:
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
         return self._modules.place(command, held=held)
 
-    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis) -> None:
+    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs) -> None:
         match command:
             case DriveAxis():
                 self._axes.drive(command)
+            case BrakeLegs():
+                self._legs.brake(command)
             case MirrorArm():
                 self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
             case MirrorTool():
@@ -205,6 +209,7 @@ class Simulation:
         self._held_parts.place()
         self._modules.pin()
         self._physics.start_step()
+        self._legs.step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
         for arm in self._arms.values():

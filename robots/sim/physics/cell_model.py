@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.device_axis import add_axis, add_jaw
+from robots.sim.physics.hexapod_legs import add_legs, place_on
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.plant_errors import PlantErrors
@@ -82,7 +83,7 @@ def build_cell(scene: SimScene) -> CellModel:
     frames += tuple(body for person in scene.people for body in body_names(person.name))
     # Frames are drawn; only `parts` are known by name.
     unknown = tuple(part.name for part in scene.unknown_parts)
-    frames += (*unknown, *(fixture.name for fixture in scene.fixtures if fixture.axis is not None))
+    frames += (*unknown, *(fixture.name for fixture in scene.fixtures if fixture.moves))
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -106,8 +107,12 @@ def cell_spec(scene: SimScene) -> Any:
         CellError: a robot model is unknown, or a shape is invalid.
     """
     spec, errors = _empty_world(scene), PlantErrors(scene)
-    for fixture in (*scene.fixtures, *scene.unknown_fixtures):
-        _add_fixture(spec, fixture)
+    known = {fixture.name: fixture for fixture in scene.fixtures}
+    for fixture in sorted((*scene.fixtures, *scene.unknown_fixtures), key=lambda one: bool(one.on)):
+        _add_fixture(spec, fixture, known)
+    for fixture in scene.fixtures:
+        if fixture.hexapod is not None:
+            add_legs(spec, fixture, known[fixture.hexapod.base])
     for part in (*scene.parts, *scene.unknown_parts):
         _add_part(spec, part, errors)
     for arm in scene.arms:
@@ -134,8 +139,11 @@ def _wxyz(pose: Pose) -> list[float]:
     return [w, x, y, z]
 
 
-def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
-    body = spec.worldbody.add_body(name=fixture.name, pos=list(fixture.pose.xyz), quat=_wxyz(fixture.pose))
+def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, FixtureBody]) -> None:
+    parent, pose = spec.worldbody, fixture.pose
+    if fixture.on:
+        parent, pose = spec.body(fixture.on), place_on(fixtures[fixture.on], fixture)
+    body = parent.add_body(name=fixture.name, pos=list(pose.xyz), quat=_wxyz(pose))
     if fixture.shape != "tray":
         geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
         if fixture.spring_n_m > 0.0:
@@ -144,9 +152,13 @@ def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
             add_jaw(geom, friction=fixture.jaw_friction)
         if fixture.axis is not None:
             add_axis(spec, body, geom, fixture.name, fixture.axis)
+        elif fixture.on:
+            geom.mass = 0.0  # that of the platform contains it
         return
     for centre, size in tray_boxes(fixture):
-        body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])
+        geom = body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])
+        if fixture.on:
+            geom.mass = 0.0
 
 
 def _add_spring(body: Any, geom: Any, fixture: FixtureBody) -> None:

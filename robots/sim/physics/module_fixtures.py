@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -28,10 +28,16 @@ def away(body: int) -> RigidTransform:
 
 @dataclass(frozen=True, kw_only=True)
 class ModuleFixtures:
-    """The fixtures of one module: the numbers of their bodies, with their poses in the frame of the module."""
+    """The fixtures of one module: the numbers of their bodies, with their poses in the frame of the module.
+
+    What is `carried` is on a platform, and moves with it. `bases` are the bodies to which legs keep a platform: they
+    stay at their place beside each other while the module is away.
+    """
 
     name: str
     bodies: dict[int, RigidTransform]
+    carried: frozenset[int] = frozenset()
+    bases: dict[int, int] = field(default_factory=dict[int, int])
 
     @classmethod
     def of(cls, cell: CellModel, module: ModuleBodies) -> ModuleFixtures:
@@ -40,19 +46,35 @@ class ModuleFixtures:
             RigidTransform.from_pose(module.at).inverse(),
             {each.name: each for each in cell.scene.fixtures},
         )
+        numbers = {name: cell.body_names.index(name) for name in module.fixtures}
+        legs = {name: body for name in module.fixtures if (body := shapes[name].hexapod) is not None}
         return cls(
             name=module.name,
             bodies={
-                cell.body_names.index(name): inverse.then(RigidTransform.from_pose(shapes[name].pose))
-                for name in module.fixtures
+                number: inverse.then(RigidTransform.from_pose(shapes[name].pose))
+                for name, number in numbers.items()
+                if not shapes[name].on
             },
+            carried=frozenset(number for name, number in numbers.items() if shapes[name].on),
+            bases={numbers[name]: numbers[body.base] for name, body in legs.items()},
         )
+
+    @property
+    def touchable(self) -> set[int]:
+        """The numbers of all bodies, also of those that are carried."""
+        return {*self.bodies, *self.carried}
 
     def put(self, pose: RigidTransform | None, *, place: PlaceBody) -> None:
         """Place them with their module, or far away, None."""
         for body, inner in self.bodies.items():
-            at = pose.then(inner) if pose is not None else away(body)
+            at = pose.then(inner) if pose is not None else self._away(body, inner)
             place(body, at.xyz, at.xyzw)
+
+    def _away(self, body: int, inner: RigidTransform) -> RigidTransform:
+        if body not in self.bases:
+            return away(body)
+        base = self.bases[body]
+        return away(base).then(self.bodies[base].inverse()).then(inner)
 
 
 def read_pose(numbers: Array) -> RigidTransform | None:

@@ -25,8 +25,8 @@ _FAR_M = 100.0
 class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
 
-    Shapes: `positions` (nq,), `velocities` (nv,), `motors` (nu,), `gravity_m_s2` (3,). Forces of the simulator are not
-    offered: controllers of arms and drives of tools know nominal models only.
+    Shapes: `positions` (nq,), `velocities` (nv,), `motors` (nu,), `gravity_m_s2` (3,), `tendon_lengths` (nt,). Forces
+    of the simulator are not offered: controllers of arms and drives of tools know nominal models only.
 
     `geom_centres` (n, 3) and `geom_rotations` (n, 9), row by row, are the poses of the geometries at the start of the
     last step, and `geom_radii` (n,) the radii of the spheres around their centres that contain them.
@@ -47,6 +47,7 @@ class Physics:
         self.velocities: Array = self._data.qvel
         self.motors: Array = self._data.ctrl
         self.gravity_m_s2: Array = model.opt.gravity.copy()
+        self.tendon_lengths: Array = self._data.ten_length
         self._xpos: Array = self._data.xpos
         self._xquat: Array = self._data.xquat
         self._rotations: Array = self._data.xmat.reshape(-1, 3, 3)
@@ -86,6 +87,10 @@ class Physics:
     def motor_number(self, name: str) -> int:
         """Return the number of a motor in `motors`."""
         return int(self._model.actuator(name).id)
+
+    def tendon_number(self, name: str) -> int:
+        """Return the number of a tendon in `tendon_lengths`."""
+        return int(self._model.tendon(name).id)
 
     def set_dry_friction(self, joint: str, force: float) -> None:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""

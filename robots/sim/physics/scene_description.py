@@ -9,6 +9,7 @@ from engine.messages.pose_algebra import compose_poses
 from robots.model.urdf.visual_mesh import LinkVisual, link_visuals
 from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 from robots.sim.physics.cell_model import tray_boxes
+from robots.sim.physics.hexapod_drawing import leg_geometries
 from robots.sim.physics.person_drawing import person_geometries
 
 
@@ -25,6 +26,7 @@ def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescri
     ]
     for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         geometries += _fixture(fixture)
+    geometries += leg_geometries(scene)
     geometries += [_part(part) for part in (*scene.parts, *scene.unknown_parts)]
     geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
     return SceneDescription(geometries=tuple(geometries))
@@ -44,25 +46,25 @@ def _mesh(arm: str, index: int, visual: LinkVisual) -> VisualGeometry:
 
 
 def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
-    pose = fixture.pose
+    pose = fixture.pose if not fixture.moves else Pose(xyz=(0.0, 0.0, 0.0))
+    frame = fixture.name if fixture.moves else "world"
     if fixture.shape != "tray":
         kind, size = _shape(fixture.shape, fixture.size_m)
-        at = pose if fixture.axis is None else Pose(xyz=(0.0, 0.0, 0.0))
         return [
             VisualGeometry(
                 name=fixture.name,
-                frame="world" if fixture.axis is None else fixture.name,
+                frame=frame,
                 kind=kind,
                 size_m=size,
                 rgba=fixture.rgba,
-                xyz=at.xyz,
-                xyzw=at.xyzw,
+                xyz=pose.xyz,
+                xyzw=pose.xyzw,
             )
         ]
     return [
         VisualGeometry(
             name=f"{fixture.name}/{index}",
-            frame="world",
+            frame=frame,
             kind="box",
             size_m=size,
             rgba=fixture.rgba,

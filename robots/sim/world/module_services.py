@@ -9,7 +9,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from engine.bus import SkillBus, Topic
-from engine.document import Cell, cell_as_docked, docks_at_start, modules_below
+from engine.document import Cell, FramedPlacement, cell_as_docked, docks_at_start, modules_below, poses_in_world
 from engine.errors import RobotError, SkillFailed
 from engine.messages import Pose
 from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugModule, UnplugModule
@@ -46,6 +46,7 @@ class ModuleServices:
         self._cell = cell if cell is not None and cell.modules else None
         self._listeners: list[SceneListener] = []
         self._followers: list[SceneListener] = []
+        self._frame_listeners: list[Callable[[], None]] = []
         self._topic: Topic[CellModules] | None = None
         self.changing = asyncio.Lock()
         """Held while the world changes what is in it, or is restored."""
@@ -75,6 +76,22 @@ class ModuleServices:
         """Return where the cell document places a fixture; None while its module is not plugged."""
         fixtures = self.document.fixtures if self.document is not None else {}
         return fixtures[fixture].at.pose() if fixture in fixtures else None
+
+    def follow_frames(self, listener: Callable[[], None]) -> None:
+        """Call `listener` when devices have moved what named frames stand on."""
+        self._frame_listeners.append(listener)
+
+    def frames_moved(self, poses: Mapping[str, Pose]) -> None:
+        """Take where the named frames on moved fixtures are, whose poses in the world are given."""
+        document = self.document
+        if document is None or not document.frames:
+            return
+        placed = {name: replace(document.fixtures[name], at=FramedPlacement.of(pose)) for name, pose in poses.items()}
+        frames = poses_in_world(document.frames, {**document.fixtures, **placed})
+        self.frames.update({name: frames[name] for name in self.frames})
+        self.scene = replace(self.scene, frames=dict(self.frames))
+        for listener in self._frame_listeners:
+            listener()
 
     def fixtures_moved(self, poses: Mapping[str, Pose]) -> None:
         """Take where devices have moved fixtures, and tell those who follow them."""

@@ -282,6 +282,7 @@ class SimWorld:
         describe = partial(describe_scene, cache=self._cache)
         publisher = self._publisher = WorldPublisher(bus, self._host, describe, scene=self.modules.scene)
         self.modules.watch(publisher.take_scene)
+        self.modules.follow_frames(lambda: publisher.take_frames(self.modules.scene.frames))
         mirror_driven_tools(bus, self._host, self._scene)
         self._bodies.register(bus)
         self.people.register(bus)

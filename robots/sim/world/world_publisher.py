@@ -13,6 +13,7 @@ from robots.scene.sim_scene import SimScene
 from robots.scene.up_axis import up_axis
 from robots.sim.host.world_host import WorldHost
 from robots.sim.loop.snapshot import SimSnapshot
+from robots.sim.physics.hexapod_drawing import leg_frames
 from robots.sim.world.arm_topics import arm_topics
 from robots.sim.world.tool_topics import tool_topic
 
@@ -58,11 +59,21 @@ class WorldPublisher:
         present = frozenset(part.name for part in scene.parts)
         away = frozenset(summary.parts) - present
         self._rows = [row for row, name in enumerate(summary.frames) if name not in away]
-        self._frames = (*(summary.frames[row] for row in self._rows), *scene.frames)
-        self._fixed_xyz = tuple(pose.xyz for pose in scene.frames.values())
-        self._fixed_xyzw = tuple(pose.xyzw for pose in scene.frames.values())
+        self._bodies = tuple(summary.frames[row] for row in self._rows)
+        self._named = scene.frames
+        self._scene = scene if any(fixture.hexapod is not None for fixture in scene.fixtures) else SimScene()
+        self._platform_rows = {
+            fixture.name: summary.frames.index(fixture.name)
+            for fixture in self._scene.fixtures
+            if fixture.hexapod is not None
+        }
         self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in present]
         self._scene_topic.publish(self._describe(scene))
+        self.publish_frames()
+
+    def take_frames(self, frames: dict[str, Pose]) -> None:
+        """Publish the named frames where they are now."""
+        self._named = frames
         self.publish_frames()
 
     @property
@@ -98,11 +109,13 @@ class WorldPublisher:
 
     def _frame_poses(self, snapshot: SimSnapshot) -> FramePoses:
         xyz, xyzw = snapshot.frames()
+        platforms = {name: Pose(xyz=xyz[row], xyzw=xyzw[row]) for name, row in self._platform_rows.items()}
+        others = {**self._named, **leg_frames(self._scene, platforms)}
         return FramePoses(
             time_s=snapshot.time_s,
-            names=self._frames,
-            xyz=tuple(xyz[row] for row in self._rows) + self._fixed_xyz,
-            xyzw=tuple(xyzw[row] for row in self._rows) + self._fixed_xyzw,
+            names=(*self._bodies, *others),
+            xyz=(*(xyz[row] for row in self._rows), *(pose.xyz for pose in others.values())),
+            xyzw=(*(xyzw[row] for row in self._rows), *(pose.xyzw for pose in others.values())),
         )
 
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:

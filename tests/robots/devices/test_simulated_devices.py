@@ -21,6 +21,8 @@ CELL = """\
 flexcell: 1
 cell: bench
 world: {kind: mujoco}
+frames:
+  seat: {parent: carriage, at: {xyz: [0, 0, 0.01]}}
 fixtures:
   carriage: {shape: box, size_m: [0.1, 0.1, 0.02], at: {xyz: [0.5, 0, 0.1]}}
   clamp: {shape: box, size_m: [0.02, 0.02, 0.02], at: {xyz: [0.5, 0.5, 0.1]}}
@@ -91,6 +93,16 @@ async def test_the_planning_scene_follows_the_carriage(tmp_path: Path) -> None:
         scene = await cell.bus.call(ReadPlanningScene(), to="cell")
         pose = next(one.pose for one in scene.obstacles if one.name == "carriage")
         assert pose.xyz[1] == pytest.approx(0.2, abs=0.004)
+
+
+async def test_a_frame_on_the_carriage_follows_it(tmp_path: Path) -> None:
+    async with opened(tmp_path) as cell:
+        await move(cell.bus, "slide", "back")
+        frames = cell.bus.topic("cell/frames", FramePoses).latest
+        assert frames is not None
+        carriage, seat = (frames.xyz[frames.names.index(name)] for name in ("carriage", "seat"))
+        assert seat == pytest.approx((carriage[0], carriage[1], carriage[2] + 0.01), abs=2e-3)
+        assert seat[1] > 0.19
 
 
 async def test_without_sensors_a_state_is_unknown_and_a_position_timed(tmp_path: Path) -> None:
