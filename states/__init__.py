@@ -19,7 +19,10 @@ from states.cell.reach import Reach
 from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
 from states.equipment.check_device import CheckDevice
+from states.equipment.check_tool import CheckTool
 from states.equipment.move_device import MoveDevice
+from states.equipment.put_tool import PutTool
+from states.equipment.take_tool import TakeTool
 from states.flow.decide import Decide
 from states.flow.log import Log
 from states.flow.set_value import SetValue
@@ -79,6 +82,7 @@ _STATES: tuple[type[State], ...] = (
     CheckDevice,
     CheckHeld,
     CheckMessage,
+    CheckTool,
     Decide,
     Detach,
     Detect,
@@ -115,6 +119,7 @@ _STATES: tuple[type[State], ...] = (
     PressAlongDmp,
     Publish,
     PutObstacle,
+    PutTool,
     Reach,
     ReadEntry,
     ReadPose,
@@ -131,6 +136,7 @@ _STATES: tuple[type[State], ...] = (
     SetSpeed,
     SetToolFrame,
     SetValue,
+    TakeTool,
     ThreePointFrame,
     UnplugModule,
     Wait,

@@ -26,7 +26,7 @@ CellNameKind = str
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
     "body", "obstacle", "scene_part", "device", "position", "module", "connector", "planner", "topic", "bus_topic",
-    "skill", "controller", "equipment",
+    "skill", "controller", "equipment", "changeable_tool",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
@@ -40,6 +40,7 @@ _WORDS: Mapping[str, str] = {
     "arm_frame": "frame for the poses of an arm",
     "body": "body",
     "scene_part": "part",
+    "changeable_tool": "part that is a tool",
     "controller": "robot or equipment",
 }
 _OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position"))
@@ -186,6 +187,7 @@ def cell_names(cell: Cell) -> CellNames:
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,
+        "changeable_tool": frozenset(name for name, part in document.parts.items() if part.tool is not None),
         "device": frozenset(document.devices),
         "position": frozenset(
             f"{name}/{position}" for name, device in document.devices.items() for position in device.positions

@@ -28,6 +28,7 @@ from engine.document.cell_modules import (
 )
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
+from engine.document.cell_tools import require_changer
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.module_document import Module
@@ -293,6 +294,8 @@ def _require_free_names(document: CellDocument, source: DocumentSource) -> None:
 def _require_drivers(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
         require_driver_kind(f"robot `{name}`", robot.driver, source, ("robots", name, "driver"))
+        has_tool = robot.gripper is not None
+        require_changer(name, robot.tool_changer, source, tool=has_tool, simulated=robot.simulated)
         if robot.gripper is not None:
             path: DataPath = ("robots", name, "gripper", "driver")
             require_driver_kind(f"the gripper of `{name}`", robot.gripper.driver, source, path)

@@ -59,6 +59,13 @@ class DriveAxis(ControlCommand, frozen=True, kw_only=True, tag="drive_axis"):
     locked: bool = False
 
 
+class SwitchToolLock(ControlCommand, frozen=True, kw_only=True, tag="switch_tool_lock"):
+    """Turn the output of the tool changer of an arm on or off."""
+
+    arm: str
+    on: bool
+
+
 class MovePersonHand(ControlCommand, frozen=True, kw_only=True, tag="move_hand"):
     """Move the hand of a person."""
 
@@ -99,6 +106,7 @@ AnyCommand = (
     | ResetFreeParts
     | PushSimBody
     | DriveAxis
+    | SwitchToolLock
     | MovePersonHand
     | RestoreWorld
     | ShutDownWorld

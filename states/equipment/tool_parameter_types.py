@@ -1,0 +1,16 @@
+"""The parameters of the states of tool changers."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+ChangeableToolName = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        description="Name of the tool: a part of the cell with `tool:`",
+        extra_json_schema={"cell_name": "changeable_tool"},
+    ),
+]
