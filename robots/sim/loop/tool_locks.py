@@ -89,9 +89,8 @@ class ToolLocks:
     def read(self, arm: str) -> tuple[bool, bool, bool]:
         """Return output and sensors of the lock of an arm, as in a snapshot."""
         lock = self._locks[arm]
-        locked = self._held(lock) >= 0 and lock.left == 0
         present = any(self._meets(lock, tool, factor=_PRESENT) for tool in self._tools)
-        return lock.on, locked, present
+        return lock.on, self._held(lock) >= 0, present
 
     def reset(self) -> None:
         """Open all locks: the parts go back to where they are at the start."""
