@@ -26,14 +26,15 @@ CellNameKind = str
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
     "body", "obstacle", "scene_part", "device", "position", "module", "connector", "planner", "topic", "bus_topic",
-    "skill", "controller", "equipment", "changeable_tool",
+    "skill", "controller", "equipment", "changeable_tool", "tool_changer",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
 (`vice/closed`) to a device. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of the cell's view;
 those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the planning scene, to
-which behaviors add. `topic` is one that the cell document declares. `controller` is a robot or `equipment`: both have
-outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
+which behaviors add. `tool_changer` is a robot that has one, `changeable_tool` a part that it takes. `topic` is one that
+the cell document declares. `controller` is a robot or `equipment`: both have outputs and inputs. `bus_topic` is any
+topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -41,6 +42,7 @@ _WORDS: Mapping[str, str] = {
     "body": "body",
     "scene_part": "part",
     "changeable_tool": "part that is a tool",
+    "tool_changer": "robot with a tool changer",
     "controller": "robot or equipment",
 }
 _OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position"))
@@ -130,6 +132,8 @@ _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
     "detector": ("camera",),
     "arm_frame": ("part", "link"),
     "part": ("obstacle",),
+    "changeable_tool": ("part",),
+    "tool_changer": ("robot",),
 }
 """Other kinds that a misused name may have, the most likely first."""
 
@@ -187,6 +191,7 @@ def cell_names(cell: Cell) -> CellNames:
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,
+        "tool_changer": frozenset(name for name, robot in robots.items() if robot.tool_changer is not None),
         "changeable_tool": frozenset(name for name, part in document.parts.items() if part.tool is not None),
         "device": frozenset(document.devices),
         "position": frozenset(

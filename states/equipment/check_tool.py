@@ -7,9 +7,8 @@ from typing import ClassVar
 from engine.cause_chain import wrap_cause
 from engine.skills.tool_changer import ReadToolChanger
 from engine.state import Context, Outcome, Skills, State
-from states.equipment.tool_parameter_types import ChangeableToolName
+from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
 from states.equipment.tool_place import require_on
-from states.motion.motion_target import RobotName
 
 
 class CheckTool(State, frozen=True, kw_only=True):
@@ -21,7 +20,7 @@ class CheckTool(State, frozen=True, kw_only=True):
     success: ClassVar[tuple[str, ...]] = ("on",)
     observes: ClassVar[bool] = True
 
-    robot: RobotName
+    robot: ToolChangerName
     tool: ChangeableToolName
 
     async def run(self, ctx: Context) -> Outcome:

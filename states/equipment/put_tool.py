@@ -13,12 +13,11 @@ from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.skills.tool_changer import DescribeTool, ReadToolChanger, ReleaseTool, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.check_tool import CheckTool
-from states.equipment.tool_parameter_types import ChangeableToolName
+from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
 from states.equipment.tool_place import docked_tcp, require_on, straight_out, tool_approach, who_is_at
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep
-from states.motion.motion_target import RobotName
 
 
 class PutTool(State, frozen=True, kw_only=True):
@@ -38,7 +37,7 @@ class PutTool(State, frozen=True, kw_only=True):
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"put": ("reason",)}
 
-    robot: RobotName
+    robot: ToolChangerName
     tool: ChangeableToolName
     approach: ApproachDirection = None
     approach_m: LineLength = 0.15

@@ -14,12 +14,11 @@ from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
 from engine.skills.planning_scene import TouchingPair
 from engine.skills.tool_changer import DescribeTool, LockTool, LockToolResult, ReadToolChanger, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
-from states.equipment.tool_parameter_types import ChangeableToolName
+from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
 from states.equipment.tool_place import require_on, straight_out, tool_approach, who_is_at
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
-from states.motion.motion_target import RobotName
 from states.motion.set_tool_frame import SetToolFrame
 
 _FAILED = {"failed": "failed"}
@@ -46,7 +45,7 @@ class TakeTool(State, frozen=True, kw_only=True):
     outputs: ClassVar[Mapping[str, Any]] = {"reason": str}
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"taken": ("reason",)}
 
-    robot: RobotName
+    robot: ToolChangerName
     tool: ChangeableToolName
     tcp: Annotated[str, Meta(description="Name of its tool centre point; its first one by default")] = ""
     approach: ApproachDirection = None

@@ -14,3 +14,7 @@ ChangeableToolName = Annotated[
         extra_json_schema={"cell_name": "changeable_tool"},
     ),
 ]
+ToolChangerName = Annotated[
+    str,
+    Meta(min_length=1, description="The arm with the tool changer", extra_json_schema={"cell_name": "tool_changer"}),
+]
