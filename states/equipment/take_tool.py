@@ -51,7 +51,7 @@ class TakeTool(State, frozen=True, kw_only=True):
     approach: ApproachDirection = None
     approach_m: LineLength = 0.15
     speed: Speed = 0.3
-    line_speed_m_s: LineSpeed = 0.05
+    line_speed_m_s: LineSpeed = 0.1
     margin_m: Margin = 0.0
     patience_s: BlockedPathTimeout = 60.0
 
