@@ -25,7 +25,8 @@ class PutTool(State, frozen=True, kw_only=True):
 
     Afterwards the arm has the tool centre point and the load of the bare flange. `missing` when the arm has not this
     tool, or loses it on the way, or it does not stay; `occupied` when something else is in its place; `not_released`
-    when the sensor of the lock tells that it still has the tool. In `unreachable` and `blocked` it is still locked.
+    when the sensor of the lock tells that it still has the tool. In `unreachable` and `blocked` it is still locked. A
+    tool that hangs in its place already, while the arm has none, is `put`; an arm that is still there leaves it.
     """
 
     state_name: ClassVar[str] = "equipment.PutTool"
@@ -66,21 +67,24 @@ class PutTool(State, frozen=True, kw_only=True):
         return ended.under(f"{self.robot} did not put {self.tool} back", where=ctx.path, kind=self.state_name)
 
     async def _put(self, ctx: Context) -> SequenceEnd | None:
-        if ended := await require_on(ctx, self.robot, self.tool):
-            return ended
         description = await ctx.call(DescribeTool(tool=self.tool), to=self.robot)
-        _, other = await who_is_at(ctx, description, self.tool)
-        if other:
-            return SequenceEnd("occupied", Cause(message=f"{other} is in the place of {self.tool}", where="cell/parts"))
-        tcp = (await ctx.call(ReadToolChanger(), to=self.robot)).tcp
-        target = docked_tcp(description, tcp)
         docked = description.docked
         approach = self._approach(retreat_vector(docked, docked, self.approach, self.approach_m))
+        at_place, other = await who_is_at(ctx, description, self.tool)
+        changer = await ctx.call(ReadToolChanger(), to=self.robot)
+        if at_place and not changer.tool:
+            return await straight_out(ctx, approach, docked)
+        if ended := await require_on(ctx, self.robot, self.tool):
+            return ended
+        if other:
+            return SequenceEnd("occupied", Cause(message=f"{other} is in the place of {self.tool}", where="cell/parts"))
+        target = docked_tcp(description, changer.tcp)
         check = SequenceStep(CheckTool(robot=self.robot, tool=self.tool), {"lost": "missing"})
         reached = await approach.to(ctx, [target], before=[check])
         if isinstance(reached, SequenceEnd):
             return reached
-        return await self._release(ctx) or await straight_out(ctx, approach) or await self._stayed(ctx, description)
+        ended = await self._release(ctx) or await straight_out(ctx, approach, docked)
+        return ended or await self._stayed(ctx, description)
 
     def _approach(self, out_m: tuple[float, float, float]) -> Approach:
         return tool_approach(

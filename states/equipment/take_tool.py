@@ -15,7 +15,7 @@ from engine.skills.planning_scene import TouchingPair
 from engine.skills.tool_changer import DescribeTool, LockTool, LockToolResult, ReadToolChanger, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
-from states.equipment.tool_place import require_on, straight_out, tool_approach, who_is_at
+from states.equipment.tool_place import docked_tcp, require_on, straight_out, tool_approach, who_is_at
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
 from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
@@ -83,10 +83,11 @@ class TakeTool(State, frozen=True, kw_only=True):
         approach = self._approach(retreat_vector(docked, docked, self.approach, self.approach_m))
         if not on and (ended := await self._dock(ctx, description, approach)):
             return ended
-        ended = await self._lock(ctx)
-        if ended is not None:
-            return (await straight_out(ctx, approach) or ended) if ended.outcome in _RETREATS else ended
-        return await straight_out(ctx, approach) or await require_on(ctx, self.robot, self.tool)
+        if (ended := await self._lock(ctx)) is not None:
+            return (await straight_out(ctx, approach, docked) or ended) if ended.outcome in _RETREATS else ended
+        tcp = self.tcp or next(iter(description.tool.tcps))
+        lifted = await straight_out(ctx, approach, docked_tcp(description, tcp))
+        return lifted or await require_on(ctx, self.robot, self.tool)
 
     def _approach(self, out_m: tuple[float, float, float]) -> Approach:
         return tool_approach(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from engine.errors import Cause
 from engine.messages import PartPoses, Pose, Vector3
-from engine.messages.pose_algebra import compose_poses, translate_pose
+from engine.messages.pose_algebra import compose_poses
 from engine.skills.motion import ForwardKinematics, Speed
 from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import TouchingPair
@@ -21,6 +21,8 @@ _AT_PLACE_M = 0.01
 """A tool whose plate is farther from its place is not in its place."""
 _NEIGHBOUR_M = 0.03
 """A part whose centre is nearer to the place of a tool is in its place."""
+_OUT_SHARE = 0.9
+"""Share of the way out from which on an arm is out."""
 
 
 async def who_is_at(ctx: Context, description: ToolDescription, tool: str) -> tuple[bool, str]:
@@ -60,10 +62,15 @@ def tool_approach(
     )
 
 
-async def straight_out(ctx: Context, approach: Approach) -> SequenceEnd | None:
-    """Move the arm straight out of the place, whatever its tool centre point is now."""
+async def straight_out(ctx: Context, approach: Approach, docked: Pose) -> SequenceEnd | None:
+    """Move the arm straight out of the place; not at all where it is out already.
+
+    `docked` is where its tool centre point is in the place, in the world.
+    """
     now = await ctx.call(ForwardKinematics(), to=approach.robot)
-    return await approach.straight_to(ctx, translate_pose(now, approach.out_m))
+    if math.dist(now.xyz, docked.xyz) >= _OUT_SHARE * math.hypot(*approach.out_m):
+        return None
+    return await approach.straight_out(ctx, docked)
 
 
 async def require_on(ctx: Context, robot: str, tool: str) -> SequenceEnd | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from engine.messages import PartPoses, Pose
-from engine.skills.tool_changer import ChangeableTool, ToolChangerState, ToolDescription
+from engine.skills.goal_end import GoalEnd, GoalStatus
+from engine.skills.tool_changer import ChangeableTool, LockToolResult, ToolChangerState, ToolDescription
 from engine.state import Outcome, State
 from states.equipment.check_tool import CheckTool
 from states.equipment.put_tool import PutTool
@@ -17,13 +18,14 @@ TOOL = ToolDescription(
 )
 PLACE = Pose(xyz=(0.5, 0.0, 0.29))
 ELSEWHERE = Pose(xyz=(0.5, 0.3, 0.02))
+FAR = Pose(xyz=(0.2, 0.0, 0.6))
 TAKE, PUT = TakeTool(robot="arm", tool="probe"), PutTool(robot="arm", tool="probe")
 
 
 async def outcome(state: State, on: ToolChangerState, **parts: Pose) -> Outcome:
     """Return how a state ends without any motion: a goal would fail, as nobody answers it."""
     ctx = FakeContext(
-        {"arm/read_tool_changer": on, "arm/describe_tool": TOOL},
+        {"arm/read_tool_changer": on, "arm/describe_tool": TOOL, "arm/forward_kinematics": FAR},
         topics={"cell/parts": PartPoses(time_s=0.0, poses=parts)},
     )
     return await state.run(ctx)
@@ -52,8 +54,27 @@ async def test_nothing_is_put_into_an_occupied_place() -> None:
 
 
 async def test_what_is_not_on_is_not_put_back() -> None:
-    found = await outcome(PUT, ToolChangerState(), probe=PLACE)
+    found = await outcome(PUT, ToolChangerState(), probe=ELSEWHERE)
     assert (found.name, reason(found)) == ("missing", "arm has no tool")
+
+
+async def test_what_hangs_in_its_place_is_put_back_already() -> None:
+    """A state that is executed again after a resume does nothing twice."""
+    assert await outcome(PUT, ToolChangerState(), probe=PLACE) == Outcome("put")
+
+
+async def test_a_tool_that_is_on_and_out_of_its_place_is_taken_already() -> None:
+    """Only its tool centre point is set; no goal of a motion is sent."""
+    on = ToolChangerState(tool="probe", tcp="tip", lock="locked")
+    ctx = FakeContext(
+        {
+            "arm/read_tool_changer": on,
+            "arm/describe_tool": TOOL,
+            "arm/forward_kinematics": FAR,
+            "arm/lock_tool": GoalEnd(GoalStatus.SUCCEEDED, LockToolResult(ended="locked"), None),
+        }
+    )
+    assert await TAKE.run(ctx) == Outcome("taken")
 
 
 async def test_a_check_tells_why_the_tool_is_lost() -> None:
