@@ -22,6 +22,7 @@ from states.equipment.check_device import CheckDevice
 from states.equipment.check_tool import CheckTool
 from states.equipment.move_device import MoveDevice
 from states.equipment.put_tool import PutTool
+from states.equipment.select_tool_point import SelectToolPoint
 from states.equipment.take_tool import TakeTool
 from states.flow.decide import Decide
 from states.flow.log import Log
@@ -125,6 +126,7 @@ _STATES: tuple[type[State], ...] = (
     ReadPose,
     Recover,
     RemoveObstacle,
+    SelectToolPoint,
     SendGoal,
     SetCollision,
     SetController,

@@ -37,6 +37,7 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "equipment.CheckTool",
         "equipment.MoveDevice",
         "equipment.PutTool",
+        "equipment.SelectToolPoint",
         "equipment.TakeTool",
         "flow.Decide",
         "flow.Log",

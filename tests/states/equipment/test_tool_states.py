@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from engine.errors import Cause
 from engine.messages import PartPoses, Pose
 from engine.skills.goal_end import GoalEnd, GoalStatus
 from engine.skills.tool_changer import ChangeableTool, LockToolResult, ToolChangerState, ToolDescription
 from engine.state import Outcome, State
 from states.equipment.check_tool import CheckTool
 from states.equipment.put_tool import PutTool
+from states.equipment.select_tool_point import SelectToolPoint
 from states.equipment.take_tool import TakeTool
-from tests.states.fake_context import FakeContext
+from tests.states.fake_context import FakeContext, broken_off
 
 PLATE = Pose(xyz=(0.0, 0.0, 0.01))
 TOOL = ToolDescription(
@@ -75,6 +77,19 @@ async def test_a_tool_that_is_on_and_out_of_its_place_is_taken_already() -> None
         }
     )
     assert await TAKE.run(ctx) == Outcome("taken")
+
+
+async def test_a_tool_centre_point_is_selected_of_the_tool_that_is_on_only() -> None:
+    """A lock that is open stays open: there could be another tool at its face."""
+    select = SelectToolPoint(robot="arm", tool="probe", tcp="side")
+    assert (await outcome(select, ToolChangerState(), probe=PLACE)).name == "missing"
+    locked = GoalEnd(GoalStatus.SUCCEEDED, LockToolResult(ended="locked"), None)
+    on = ToolChangerState(tool="probe", tcp="tip", lock="locked")
+    ctx = FakeContext({"arm/read_tool_changer": on, "arm/lock_tool": locked})
+    assert await select.run(ctx) == Outcome("selected")
+    refused = broken_off(GoalStatus.REJECTED, Cause(message="probe has no tool centre point side", where="arm"))
+    ctx = FakeContext({"arm/read_tool_changer": on, "arm/lock_tool": refused})
+    assert (await select.run(ctx)).name == "failed"
 
 
 async def test_a_check_tells_why_the_tool_is_lost() -> None:
