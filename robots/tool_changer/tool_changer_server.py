@@ -82,7 +82,7 @@ class ToolChangerServer:
         self._tool = ""
         self._lost = ""
         self._topic: Topic[ToolChangerState] | None = None
-        self._told = ToolChangerState()
+        self._published = ToolChangerState()
         self.changed: Callable[[], None] = _no_operation
         """Called when the arm has another tool, tool centre point or load."""
 
@@ -102,8 +102,8 @@ class ToolChangerServer:
             bus.advertise_service(SimulateDeviceFault, self._break, namespace=name)
         self._topic = bus.topic(f"{name}/tool_changer", ToolChangerState)
         self._topic.provide(self.state)
-        self._told = self.state()
-        self._topic.publish(self._told)
+        self._published = self.state()
+        self._topic.publish(self._published)
 
     def begin(self) -> None:
         """Follow the sensors in real time, until `end`; in virtual time the world calls `follow`."""
@@ -283,9 +283,9 @@ class ToolChangerServer:
 
     def _publish(self) -> bool:
         state = self.state()
-        if self._topic is None or state == self._told:
+        if self._topic is None or state == self._published:
             return False
-        self._told = state
+        self._published = state
         self._topic.publish(state)
         return True
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
-
-from msgspec import Meta
+from typing import ClassVar
 
 from engine.skills.arm_target import StoredTargets, ToolChange
 from engine.skills.tool_changer import LockTool
 from engine.state import Context, Outcome, Skills, State, goal_cause
-from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
+from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName, ToolPointName
 from states.equipment.tool_place import require_on
 
 
@@ -23,7 +21,7 @@ class SelectToolPoint(State, frozen=True, kw_only=True):
 
     robot: ToolChangerName
     tool: ChangeableToolName
-    tcp: Annotated[str, Meta(min_length=1, description="Name of the tool centre point in `tool:`")]
+    tcp: ToolPointName
 
     def resources(self) -> tuple[str, ...]:
         """Return the arm."""

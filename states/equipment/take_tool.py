@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
-
-from msgspec import Meta
+from typing import Any, ClassVar
 
 from engine.errors import Cause
 from engine.skills.arm_target import StoredTargets, ToolChange
@@ -14,7 +12,7 @@ from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
 from engine.skills.planning_scene import TouchingPair
 from engine.skills.tool_changer import DescribeTool, LockTool, LockToolResult, ReadToolChanger, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
-from states.equipment.tool_parameter_types import ChangeableToolName, ToolChangerName
+from states.equipment.tool_parameter_types import ChangeableToolName, FirstToolPointName, ToolChangerName
 from states.equipment.tool_place import docked_tcp, require_on, straight_out, tool_approach, who_is_at
 from states.manipulation.approach import Approach
 from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
@@ -47,7 +45,7 @@ class TakeTool(State, frozen=True, kw_only=True):
 
     robot: ToolChangerName
     tool: ChangeableToolName
-    tcp: Annotated[str, Meta(description="Name of its tool centre point; its first one by default")] = ""
+    tcp: FirstToolPointName = ""
     approach: ApproachDirection = None
     approach_m: LineLength = 0.15
     speed: Speed = 0.3

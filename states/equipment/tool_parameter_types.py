@@ -18,3 +18,11 @@ ToolChangerName = Annotated[
     str,
     Meta(min_length=1, description="The arm with the tool changer", extra_json_schema={"cell_name": "tool_changer"}),
 ]
+_POINT = {"cell_name": "tool_point", "of": "tool"}
+ToolPointName = Annotated[
+    str, Meta(min_length=1, description="Name of a tool centre point of the tool", extra_json_schema=_POINT)
+]
+FirstToolPointName = Annotated[
+    str,
+    Meta(description="Name of a tool centre point of the tool; its first one by default", extra_json_schema=_POINT),
+]

@@ -40,6 +40,7 @@ def names(tmp_path: Path) -> CellNames:
         ("output", "right/linear_axis", "`right` of the cell bench has no output `linear_axis`", "known: 0, 1, 2, 3"),
         ("tool_changer", "left", "the cell bench has no robot with a tool changer `left`", "`left` is a robot"),
         ("changeable_tool", "plate", "the cell bench has no part that is a tool `plate`", "`plate` is a part"),
+        ("tool_point", "probe/tp", "`probe` of the cell bench has no tool centre point `tp`", "did you mean tip?"),
         ("tool", "right/gripper", "`right` of the cell bench has no tool `gripper`", "there are none"),
     ],
 )
