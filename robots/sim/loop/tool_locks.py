@@ -123,9 +123,9 @@ class ToolLocks:
     def _meets(self, lock: _Lock, tool: _Tool, *, factor: float) -> bool:
         """Return whether the plate of a tool is at the face, within so many tolerances."""
         reach_m = factor * lock.spec.tolerance_m
-        xyz, wxyz = self._physics.body_poses(np.array([lock.face, tool.body]))
-        if float(np.abs(xyz[1] - xyz[0]).max()) > tool.face_m + reach_m:
+        if abs(self._physics.apart_m(lock.face, tool.body) - tool.face_m) > reach_m:
             return False
+        xyz, wxyz = self._physics.body_poses(np.array([lock.face, tool.body]))
         face, plate = (RigidTransform(xyz=xyz[i], xyzw=np.roll(wxyz[i], -1)) for i in (0, 1))
         due = face.then(RigidTransform(xyz=np.array([0.0, 0.0, tool.face_m]), xyzw=np.array([0.0, 0.0, 0.0, 1.0])))
         return due.distance_m(plate) <= reach_m and due.angle_rad(plate) <= factor * lock.spec.tolerance_rad

@@ -7,6 +7,7 @@ that build specifications.
 from __future__ import annotations
 
 import hashlib
+import math
 from typing import Any
 
 import numpy as np
@@ -217,6 +218,10 @@ class Physics:
         attraction = self._attractions.setdefault(body, np.zeros(6))
         attraction[:3] += force
         attraction[3:] += cross(point - self._data.xipos[body], force)
+
+    def apart_m(self, body: int, other: int) -> float:
+        """Return the distance of the origins of two bodies at the start of the last step."""
+        return math.dist(self._xpos[body].tolist(), self._xpos[other].tolist())
 
     def seen_from(self, body: int, other: int) -> Array:
         """Return the origin of another body in the frame of a body, (3,), at the start of the last step."""
