@@ -29,6 +29,7 @@ from engine.document.cell_modules import (
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
 from engine.document.cell_tools import require_changer
+from engine.document.device_pins import require_device_pins
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.module_document import Module
@@ -145,7 +146,8 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
         parts, cameras, devices = dict(self.parts), dict(self.cameras), dict(self.devices)
         for name, module in modules.items():
-            added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
+            spec = self.modules[name]
+            added = docked(name, module.document, connector=spec.connector or WORLD, equipment=spec.equipment)
             frames |= added.frames
             fixtures |= added.fixtures
             parts |= added.parts
@@ -254,6 +256,9 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
     carried = _items_on_modules(written, document, source, modules) if modules else {}
     pins = load_pins(document.equipment, source, folder=file.parent, taken=_namespaces(document))
+    require_device_pins(
+        document.devices, source, document.modules, document.equipment, pins, has_world=document.world is not None
+    )
     return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried, pins=pins)
 
 
@@ -294,8 +299,7 @@ def _require_free_names(document: CellDocument, source: DocumentSource) -> None:
 def _require_drivers(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
         require_driver_kind(f"robot `{name}`", robot.driver, source, ("robots", name, "driver"))
-        has_tool = robot.gripper is not None
-        require_changer(name, robot.tool_changer, source, tool=has_tool, simulated=robot.simulated)
+        require_changer(name, robot.tool_changer, source, tool=robot.gripper is not None, simulated=robot.simulated)
         if robot.gripper is not None:
             path: DataPath = ("robots", name, "gripper", "driver")
             require_driver_kind(f"the gripper of `{name}`", robot.gripper.driver, source, path)
