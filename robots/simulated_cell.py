@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import partial
 
 from msgspec.structs import replace
@@ -11,19 +12,25 @@ from engine.cell.drivers import digital_inputs, digital_outputs
 from engine.clock import Clock
 from engine.document import Cell
 from engine.errors import CellError
+from engine.messages import Pose
 from robots.arm.arm_server import ArmServer
 from robots.arm.services.input_services import InputServices
 from robots.arm.services.numbered_signals import require_signals
 from robots.arm.services.output_services import OutputServices
 from robots.devices.simulated_devices import SimulatedDevices
+from robots.model.mechanics.kinematics import ArmKinematics
+from robots.model.transform import RigidTransform
 from robots.scene.docked_scene import with_modules
 from robots.scene.scene_builder import build_scene
 from robots.scene.sim_scene import ArmPlacement
 from robots.sim.host.process_host import NewStopLine
+from robots.sim.ports.sim_tool_lock import SimToolLock
 from robots.sim.world.sim_robot import SimRobot
 from robots.sim.world.sim_world import SimWorld
 from robots.sim.world.sim_world import new_world as new_sim_world
 from robots.standard_tools.tool_simulation import tool_server
+from robots.tool_changer import ToolChangerServer, changeable_tools
+from robots.tool_changer.tool_changer_server import FOLLOW_S
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.monitored_separation import MonitoredSeparation
@@ -114,7 +121,38 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         inputs=_inputs(cell, world, placement),
         frames=world.modules.frames,
         workspace=workspace,
+        tool_changer=_tool_changer(cell, world, placement, clock),
     )
+
+
+def _tool_changer(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock) -> ToolChangerServer | None:
+    """Return the tool changer of an arm, None without one."""
+    name, changer = placement.name, placement.tool_changer
+    if changer is None:
+        return None
+    port, kinematics = world.arm(name), ArmKinematics(placement.robot(), base=RigidTransform.from_pose(placement.base))
+    lock = SimToolLock(arm=name, changer=changer, host=world.host)
+
+    def place_of(tool: str) -> Pose | None:
+        document = world.modules.document or cell.document
+        return document.parts[tool].at.pose() if tool in document.parts else None
+
+    server = ToolChangerServer(
+        name,
+        changer=changer,
+        lock=lock,
+        arm=port,
+        tools=changeable_tools(cell.document.parts),
+        place_of=place_of,
+        face=lambda: kinematics.tool_pose(port.sample().position_rad),
+        clock=clock,
+        simulate=lock.break_it,
+    )
+    if clock.virtual:
+        every = max(1, round(FOLLOW_S / world.modules.scene.step_s))
+        steps = itertools.count(1)
+        world.each_step(lambda: next(steps) % every == 0 and server.follow(), busy=lambda: False)
+    return server
 
 
 def _with_signals(cell: Cell, arm: ArmPlacement) -> ArmPlacement:

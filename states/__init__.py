@@ -20,8 +20,12 @@ from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
 from states.equipment.check_device import CheckDevice
 from states.equipment.check_hexapod import CheckHexapod
+from states.equipment.check_tool import CheckTool
 from states.equipment.move_device import MoveDevice
 from states.equipment.move_hexapod import MoveHexapod
+from states.equipment.put_tool import PutTool
+from states.equipment.select_tool_point import SelectToolPoint
+from states.equipment.take_tool import TakeTool
 from states.flow.decide import Decide
 from states.flow.log import Log
 from states.flow.set_value import SetValue
@@ -82,6 +86,7 @@ _STATES: tuple[type[State], ...] = (
     CheckHexapod,
     CheckHeld,
     CheckMessage,
+    CheckTool,
     Decide,
     Detach,
     Detect,
@@ -119,11 +124,13 @@ _STATES: tuple[type[State], ...] = (
     PressAlongDmp,
     Publish,
     PutObstacle,
+    PutTool,
     Reach,
     ReadEntry,
     ReadPose,
     Recover,
     RemoveObstacle,
+    SelectToolPoint,
     SendGoal,
     SetCollision,
     SetController,
@@ -135,6 +142,7 @@ _STATES: tuple[type[State], ...] = (
     SetSpeed,
     SetToolFrame,
     SetValue,
+    TakeTool,
     ThreePointFrame,
     UnplugModule,
     Wait,

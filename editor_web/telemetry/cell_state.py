@@ -10,6 +10,7 @@ from engine.messages.sensing import CameraInfo
 from engine.messages.tool_hold import ToolHold
 from engine.project import BusInspector
 from engine.skills.modules import CellModules
+from engine.skills.tool_changer import ToolChangerState
 
 _DIGITS = 4
 
@@ -43,6 +44,8 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
                     states[device] = message
                 case DeviceLink():
                     links[device] = message
+                case ToolChangerState():
+                    tools[owner] = ToolHolds(held=bool(message.tool), part=message.tool)
                 case CellModules():
                     modules = {each.module: each.connector for each in message.modules}
                 case _:
@@ -51,7 +54,7 @@ def cell_state(inspector: BusInspector) -> CellStateFrame:
     return CellStateFrame(poses=poses, cameras=cameras, tools=tools, devices=devices, modules=modules)
 
 
-_KINDS = (FramePoses, PartPoses, CameraInfo, DeviceState, DeviceLink, CellModules)
+_KINDS = (FramePoses, PartPoses, CameraInfo, DeviceState, DeviceLink, CellModules, ToolChangerState)
 _READ = frozenset(kind.__name__ for kind in _KINDS)
 
 

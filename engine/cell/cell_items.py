@@ -15,7 +15,7 @@ from typing import Literal
 import msgspec
 
 from engine.cell.robot_models import tool_kinds
-from engine.document.cell import Cell
+from engine.document.cell import Cell, CellDocument
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
 from engine.skills.modules import MODULES_TOPIC
@@ -152,11 +152,7 @@ def _with_lines(item: CellItem, cell: Cell, text: TextExcerpts, modules: Mapping
 
 def _items(cell: Cell) -> Iterator[CellItem]:
     document = cell.document
-    for name, robot in document.robots.items():
-        path = f"robots/{name}"
-        yield CellItem(path=path, kind="robot", name=name, model=robot.model)
-        if robot.gripper is not None:
-            yield CellItem(path=f"{path}/gripper", kind="tool", name=name, model=robot.gripper.model, owner=path)
+    yield from _robots(document)
     for name, equipment in document.equipment.items():
         model = cell.pins[name].document.equipment if name in cell.pins else equipment.driver_kind
         yield CellItem(path=f"equipment/{name}", kind="equipment", name=name, model=model)
@@ -194,9 +190,20 @@ def _items(cell: Cell) -> Iterator[CellItem]:
         yield CellItem(path="store", kind="store", name="store", model=str(tag))
 
 
+def _robots(document: CellDocument) -> Iterator[CellItem]:
+    """Yield the robots, each followed by its tool or its tool changer."""
+    for name, robot in document.robots.items():
+        path = f"robots/{name}"
+        yield CellItem(path=path, kind="robot", name=name, model=robot.model)
+        if robot.gripper is not None:
+            yield CellItem(path=f"{path}/gripper", kind="tool", name=name, model=robot.gripper.model, owner=path)
+        if robot.tool_changer is not None:
+            yield CellItem(path=f"{path}/tool_changer", kind="tool", name=name, model="tool changer", owner=path)
+
+
 def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
     """Return the topics below the name of an item; those of a tool are below its robot: `left/gripper/state`."""
-    tools = tuple(f"{item.name}/{kind}/" for kind in tool_kinds())
+    tools = (*(f"{item.name}/{kind}/" for kind in tool_kinds()), f"{item.name}/tool_changer")
     match item.kind:
         case "robot":
             return tuple(each for each in known if each.startswith(f"{item.name}/") and not each.startswith(tools))

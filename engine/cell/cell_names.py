@@ -26,26 +26,33 @@ CellNameKind = str
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
     "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector", "planner", "topic",
-    "bus_topic", "skill", "controller", "equipment",
+    "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer", "tool_point",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
-(`vice/closed`) and `hexapod_pose` to a device. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame
-of the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
-planning scene, to which behaviors add. `topic` is one that the cell document declares. `controller` is a robot or
-`equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell
-knows those."""
+(`vice/closed`) and `hexapod_pose` to a device, `tool_point` (`probe/tip`) to a tool of a tool changer. `arm_frame` is a
+frame in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both.
+`body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `tool_changer` is a robot
+that has one, `changeable_tool` a part that it takes. `topic` is one that the cell document declares. `controller` is a
+robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open
+cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
     "arm_frame": "frame for the poses of an arm",
     "body": "body",
     "scene_part": "part",
+    "changeable_tool": "part that is a tool",
+    "tool_changer": "robot with a tool changer",
+    "tool_point": "tool centre point",
     "controller": "robot or equipment",
     "hexapod_pose": "pose",
 }
-_OWNED = frozenset[CellNameKind](("tool", "link", "output", "input", "label", "position", "hexapod_pose"))
-_BELOW_DEVICES = frozenset[CellNameKind](("position", "hexapod_pose"))
+_OWNED = frozenset[CellNameKind]((
+    "tool", "link", "output", "input", "label", "position", "hexapod_pose", "tool_point",
+))  # fmt: skip
+_OF_PATHS = frozenset[CellNameKind](("position", "hexapod_pose", "tool_point"))
+"""Those of them whose owner may stand on a module: `vice/jaws/closed`."""
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
 
@@ -77,8 +84,8 @@ class CellNames:
         """Return the message for a name that the cell does not have."""
         owner, _, below = name.partition("/")
         if kind in _OWNED:
-            owner, _, below = name.rpartition("/") if kind in _BELOW_DEVICES else (owner, "", below)
-            return f"`{owner}` of the cell {self.cell} has no {kind} `{below}`"
+            owner, _, below = name.rpartition("/") if kind in _OF_PATHS else (owner, "", below)
+            return f"`{owner}` of the cell {self.cell} has no {_word(kind)} `{below}`"
         return f"the cell {self.cell} has no {_word(kind)} `{name}`"
 
     def advice(self, kind: CellNameKind, name: str, *, more: Iterable[str] = ()) -> str:
@@ -94,7 +101,7 @@ class CellNames:
             return f"`{name}` is {'' if other == 'equipment' else 'a '}{_word(other)}"
         known = {*self.by_kind.get(kind, ()), *more}
         if kind in _OWNED:
-            owner, _, below = name.rpartition("/") if kind in _BELOW_DEVICES else name.partition("/")
+            owner, _, below = name.rpartition("/") if kind in _OF_PATHS else name.partition("/")
             return did_you_mean(below, {each[len(owner) + 1 :] for each in known if each.startswith(f"{owner}/")})
         return did_you_mean(name, known)
 
@@ -132,6 +139,8 @@ _OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
     "detector": ("camera",),
     "arm_frame": ("part", "link"),
     "part": ("obstacle",),
+    "changeable_tool": ("part",),
+    "tool_changer": ("robot",),
 }
 """Other kinds that a misused name may have, the most likely first."""
 
@@ -189,6 +198,8 @@ def cell_names(cell: Cell) -> CellNames:
         "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
         "obstacle": fixtures,
         "scene_part": parts,
+        "tool_changer": frozenset(name for name, robot in robots.items() if robot.tool_changer is not None),
+        "changeable_tool": frozenset(name for name, part in document.parts.items() if part.tool is not None),
         "device": frozenset(document.devices),
         "position": frozenset(
             f"{name}/{position}" for name, device in document.devices.items() for position in device.positions
@@ -197,6 +208,12 @@ def cell_names(cell: Cell) -> CellNames:
             f"{name}/{pose}"
             for name, device in document.devices.items()
             for pose in (device.hexapod.poses if device.hexapod is not None else ())
+        ),
+        "tool_point": frozenset(
+            f"{name}/{point}"
+            for name, part in document.parts.items()
+            if part.tool is not None
+            for point in part.tool.tcps
         ),
         "module": frozenset(document.modules),
         "connector": frozenset(document.connectors),

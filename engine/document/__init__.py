@@ -26,6 +26,7 @@ from engine.document.cell_perception import (
     UnknownSpacePolicy,
     arm_reach_m,
 )
+from engine.document.cell_tools import ToolChangerSpec, ToolShape, ToolSpec, centre_of_mass
 from engine.document.docking import cell_as_docked, cell_at_start, docks_at_start, modules_below
 from engine.document.duration import seconds
 from engine.document.expression.expression import Template, compile_template
@@ -103,6 +104,9 @@ __all__ = [
     "SweepDocument",
     "Template",
     "TimeoutSpec",
+    "ToolChangerSpec",
+    "ToolShape",
+    "ToolSpec",
     "UnknownBody",
     "UnknownSpacePolicy",
     "any_value",
@@ -111,6 +115,7 @@ __all__ = [
     "bind_parameters",
     "cell_as_docked",
     "cell_at_start",
+    "centre_of_mass",
     "compile_template",
     "decode_document",
     "docks_at_start",

@@ -28,6 +28,7 @@ from engine.document.cell_modules import (
 )
 from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
+from engine.document.cell_tools import require_changer
 from engine.document.device_pins import require_device_pins
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
@@ -301,6 +302,7 @@ def _require_free_names(document: CellDocument, source: DocumentSource) -> None:
 def _require_drivers(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
         require_driver_kind(f"robot `{name}`", robot.driver, source, ("robots", name, "driver"))
+        require_changer(name, robot.tool_changer, source, tool=robot.gripper is not None, simulated=robot.simulated)
         if robot.gripper is not None:
             path: DataPath = ("robots", name, "gripper", "driver")
             require_driver_kind(f"the gripper of `{name}`", robot.gripper.driver, source, path)

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from engine.document.cell_tools import ToolSpec, require_tools
 from engine.document.placement import Angle, Color, FramedPlacement, Length, Offset
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -54,7 +55,7 @@ class PartSpec(StrictModel, frozen=True, kw_only=True):
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
     `at` is its centre. `friction` is that of its surface with any other body, where it is not that of rubber pads on
-    dry steel or plastic: oil, wax, ice.
+    dry steel or plastic: oil, wax, ice. A part with `tool` is the plate of a tool that a tool changer takes.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
@@ -67,6 +68,7 @@ class PartSpec(StrictModel, frozen=True, kw_only=True):
     at: FramedPlacement = FramedPlacement()
     jitter: Jitter = Jitter()
     color: Color = "#d0d0d0"
+    tool: Annotated[ToolSpec | None, Meta(description="What the tool consists of beside its plate")] = None
 
 
 class UnknownBody(StrictModel, frozen=True, kw_only=True):
@@ -126,3 +128,4 @@ def require_sizes(
             raise DocumentError(
                 f"`{path[1]}` is both a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
             )
+    require_tools({name: (part.shape, part.tool) for name, part in parts.items()}, source)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, cast
 
 from msgspec import Meta
 
+from engine.document.cell_tools import ToolChangerSpec
 from engine.document.placement import FramedPlacement, Name
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -39,13 +40,15 @@ class RobotSpec(StrictModel, frozen=True, kw_only=True):
     with a `/` in it, relative to this document. `calibration` is the arm's factory calibration file.
     `coupled_joints`: the controller counts coupled axes relative to each other. `outputs` maps uses to
     digital outputs of the controller, `inputs` names of your own to its digital inputs. `driver` is `sim`,
-    or a mapping with the driver's name as `kind` and its options as further keys.
+    or a mapping with the driver's name as `kind` and its options as further keys. A robot with a `tool_changer`
+    has no gripper: it takes parts that are tools.
     """
 
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
     driver: Literal["sim"] | dict[str, object] = "sim"
     base: FramedPlacement = FramedPlacement()
     gripper: GripperSpec | None = None
+    tool_changer: ToolChangerSpec | None = None
     calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
     coupled_joints: bool = False
     outputs: dict[OutputUse, OutputNumber] = {}

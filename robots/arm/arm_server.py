@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Protocol, Self
 
@@ -34,6 +34,7 @@ from robots.gripper.tool_server import ToolServer
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
 from robots.port import ArmPort, GraspCommand, Tolerance
+from robots.tool_changer import ToolChangerServer
 from robots.workspace.workspace import Workspace
 
 
@@ -63,6 +64,7 @@ class ArmServer:
         frames: Poses in the world of the named frames of the cell, in which goals may be given.
         workspace: The workspace shared with other arms; without one the arm has no collision-free motions and
             checks no path.
+        tool_changer: Its tool changer, if any.
     """
 
     def __init__(
@@ -79,6 +81,7 @@ class ArmServer:
         tolerance: Tolerance | None = None,
         frames: Mapping[str, Pose] | None = None,
         workspace: Workspace | None = None,
+        tool_changer: ToolChangerServer | None = None,
     ) -> None:
         self._runner = runner = MotionRunner(
             name=name,
@@ -91,6 +94,8 @@ class ArmServer:
             frames=frames,
         )
         self._gripper = gripper
+        self._tool_changer = tool_changer
+        self._describe: Callable[[], None] = _no_operation
         self.outputs = outputs
         self.inputs = inputs
         self._report = report = ArmStatusPublisher(runner)
@@ -110,8 +115,11 @@ class ArmServer:
             report,
             *((outputs,) if outputs is not None else ()),
             *((inputs,) if inputs is not None else ()),
+            *((tool_changer,) if tool_changer is not None else ()),
             *((FreeMotions(runner, workspace),) if workspace is not None else ()),
         )
+        if tool_changer is not None:
+            tool_changer.changed = self._tool_changed
 
     @property
     def name(self) -> str:
@@ -131,13 +139,16 @@ class ArmServer:
         """Advertise the motion skills under the arm's name and publish `<name>/description`."""
         for group in self._groups:
             group.register(bus)
-        bus.topic(f"{self.name}/description", RobotDescription).publish(self.description())
+        topic = bus.topic(f"{self.name}/description", RobotDescription)
+        self._describe = lambda: topic.publish(self.description())
+        self._describe()
         if self._gripper is not None:
             self._gripper.register(bus)
 
     def description(self) -> RobotDescription:
         """Return the description of this arm: limits, base pose and URDF text."""
         model, limits = self._runner.model, self._runner.model.limits
+        changed = self._tool_changer.tool if self._tool_changer is not None else ""
         return RobotDescription(
             name=self.name,
             model=model.name,
@@ -152,7 +163,7 @@ class ArmServer:
             licence=model.licence,
             effort_nm=limits.effort_nm,
             jerk_rad_s3=limits.jerk_rad_s3,
-            tool=model.tool.name if model.tool is not None else "",
+            tool=model.tool.name if model.tool is not None else changed,
             tool_kind=model.tool.kind if model.tool is not None else "",
             tool_licence=model.tool.licence if model.tool is not None else "",
             calibration=model.calibration,
@@ -206,6 +217,8 @@ class ArmServer:
         if not runner.clock.virtual:
             # In virtual time nobody waits for wall time, so modules load on first use.
             runner.loading.begin()
+        if self._tool_changer is not None:
+            self._tool_changer.begin()
         return self
 
     async def __aexit__(
@@ -219,4 +232,14 @@ class ArmServer:
             self._runner.lost_reason = ""
             self._runner.status = DeviceStatus.DISCONNECTED
             self._runner.changed()
+            if self._tool_changer is not None:
+                await self._tool_changer.end()
             await self._runner.loading.close()
+
+    def _tool_changed(self) -> None:
+        self._runner.changed()
+        self._describe()
+
+
+def _no_operation() -> None:
+    """Do nothing."""

@@ -7,7 +7,7 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from engine.document import RobotSpec
+from engine.document import RobotSpec, ToolChangerSpec
 from engine.errors import CellError
 from engine.wording import did_you_mean
 from robots.model.folder.composition import compose
@@ -39,7 +39,12 @@ def model_by_name(name: str) -> RobotModel:
 
 
 def robot_model(
-    name: str, *, gripper: str | None = OWN_TOOL, calibration: Path | None = None, coupled_joints: bool = False
+    name: str,
+    *,
+    gripper: str | None = OWN_TOOL,
+    calibration: Path | None = None,
+    coupled_joints: bool = False,
+    changer: ToolChangerSpec | None = None,
 ) -> RobotModel:
     """Return the model of an arm with a tool at its flange; cached.
 
@@ -49,6 +54,7 @@ def robot_model(
             or `OWN_TOOL`.
         calibration: Factory calibration file of this individual arm.
         coupled_joints: The controller uses coupled axes, as an ABB controller does (see `JointMap`).
+        changer: The tool changer at a bare flange.
 
     Raises:
         CellError: unknown model (suggests similar names), its description is not installed, or it has no such option.
@@ -59,7 +65,7 @@ def robot_model(
         gripper = load_arm(arm).document.tool
     tool = _folder(gripper, TOOLS_DIR, TOOL_FILE, "gripper model") if gripper is not None else None
     changed = tuple(_changed_ns(path) for path in (arm, tool, calibration))
-    return _composed(arm, tool, calibration, coupled_joints=coupled_joints, changed=changed)
+    return _composed(arm, tool, calibration, coupled_joints=coupled_joints, changer=changer, changed=changed)
 
 
 def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotModel:
@@ -78,6 +84,7 @@ def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotMod
         gripper=model_location(entry.gripper.model, resolve) if entry.gripper is not None else None,
         calibration=resolve(entry.calibration) if entry.calibration is not None else None,
         coupled_joints=entry.coupled_joints,
+        changer=entry.tool_changer,
     )
 
 
@@ -94,6 +101,7 @@ def _composed(
     calibration: Path | None,
     *,
     coupled_joints: bool,
+    changer: ToolChangerSpec | None,
     changed: tuple[int, ...],  # noqa: ARG001 - part of the key of the cache
 ) -> RobotModel:
     try:
@@ -102,6 +110,7 @@ def _composed(
             load_tool(tool) if tool is not None else None,
             calibration=calibration,
             coupled_joints=coupled_joints,
+            changer=changer,
         )
     except CellError as error:
         raise CellError(

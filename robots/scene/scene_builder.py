@@ -140,6 +140,7 @@ def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
         coupled_joints=robot.coupled_joints,
         driven_tool=robot.gripper is not None and (bool(robot.gripper.driver_kind) or not robot.simulated),
         driven=not robot.simulated,
+        tool_changer=robot.tool_changer,
     )
     try:
         placement.robot()
@@ -164,6 +165,7 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
                 friction=part.friction,
                 pose=pose,
                 rgba=_rgba(part.color),
+                tool=part.tool,
             )
         )
     return bodies

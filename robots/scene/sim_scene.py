@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import RealismName, arm_reach_m
+from engine.document import RealismName, ToolChangerSpec, ToolSpec, arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
@@ -29,7 +29,8 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     `calibration` is the path of the arm's factory calibration file. A `driven_tool` has a driver of its own: the world
     simulates its body, with its fingers at rest, and neither commands it nor publishes its state. A `driven` arm has a
     driver too: the world places its body where the driver measures it, and simulates no motors. `digital_outputs` and
-    `digital_inputs` are those of its controller, None for as many as the model has.
+    `digital_inputs` are those of its controller, None for as many as the model has. With a `tool_changer` there is no
+    gripper: the arm takes parts that are tools.
     """
 
     name: str
@@ -42,6 +43,7 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     driven: bool = False
     digital_outputs: int | None = None
     digital_inputs: int | None = None
+    tool_changer: ToolChangerSpec | None = None
 
     def robot(self) -> RobotModel:
         """Return the model of the arm with its tool.
@@ -55,6 +57,7 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
             gripper=self.gripper,
             calibration=Path(self.calibration) if self.calibration is not None else None,
             coupled_joints=self.coupled_joints,
+            changer=self.tool_changer,
         )
 
 
@@ -122,7 +125,8 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):
     """A free body with uniform density; `magnetic` if it is of iron or steel.
 
-    Without `friction` the contact has the larger coefficient of the two bodies, or that of a pad.
+    Without `friction` the contact has the larger coefficient of the two bodies, or that of a pad. A part with a `tool`
+    is the plate of a tool, to which further bodies are fixed; `mass_kg` is that of the plate alone.
     """
 
     name: str
@@ -133,6 +137,12 @@ class PartBody(msgspec.Struct, frozen=True, kw_only=True):
     magnetic: bool = False
     friction: float | None = None
     rgba: Rgba = GREY
+    tool: ToolSpec | None = None
+
+    @property
+    def face_m(self) -> float:
+        """How far the face of the plate of a tool is from its centre, towards -z."""
+        return self.size_m[-1] / 2.0
 
 
 class PersonBody(msgspec.Struct, frozen=True, kw_only=True):

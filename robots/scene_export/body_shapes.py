@@ -5,27 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from engine.messages import Vector3
+from engine.messages import Pose, Vector3
+from engine.messages.shapes import AT_ORIGIN
 from robots.scene.sim_scene import FixtureBody, PartBody
 from robots.sim.physics.cell_model import tray_boxes
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodySolid:
-    """A solid with its centre in the frame of its body; sizes in metres as in `robots.scene.sim_scene`."""
+    """A solid with its pose in the frame of its body; sizes in metres as in `robots.scene.sim_scene`."""
 
     shape: str
     size_m: tuple[float, ...]
-    centre_m: Vector3 = (0.0, 0.0, 0.0)
+    pose: Pose = AT_ORIGIN
 
 
 def solids_of(body: FixtureBody | PartBody) -> Iterator[BodySolid]:
-    """Yield the solids of a body: one, or the floor and the walls of a tray."""
+    """Yield the solids of a body: one, the floor and the walls of a tray, or a plate and what a tool has beside it."""
     if isinstance(body, FixtureBody) and body.shape == "tray":
         for centre_m, size_m in tray_boxes(body):
-            yield BodySolid(shape="box", size_m=size_m, centre_m=centre_m)
-    else:
-        yield BodySolid(shape=body.shape, size_m=body.size_m)
+            yield BodySolid(shape="box", size_m=size_m, pose=Pose(xyz=centre_m))
+        return
+    yield BodySolid(shape=body.shape, size_m=body.size_m)
+    for one in body.tool.shapes if isinstance(body, PartBody) and body.tool is not None else ():
+        yield BodySolid(shape=one.shape, size_m=one.size_m, pose=one.at.pose())
 
 
 def inertia_kg_m2(part: PartBody) -> Vector3:

@@ -84,7 +84,7 @@ def _add_body(trimesh: Any, drawn: Any, body: FixtureBody | PartBody) -> None:
             node_name=f"{body.name}/solid_{number}",
             geom_name=f"{body.name}/solid_{number}",
             parent_node_name=body.name,
-            transform=_matrix(Pose(xyz=solid.centre_m)),
+            transform=_matrix(solid.pose),
         )
 
 

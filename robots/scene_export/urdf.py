@@ -98,7 +98,7 @@ def _add_body(robot: ET.Element, body: FixtureBody | PartBody) -> None:
     for solid in solids_of(body):
         looks, touches = ET.SubElement(link, "visual"), ET.SubElement(link, "collision")
         for element in (looks, touches):
-            ET.SubElement(element, "origin", xyz=_numbers(solid.centre_m), rpy="0 0 0")
+            ET.SubElement(element, "origin", xyz=_numbers(solid.pose.xyz), rpy=_rpy(solid.pose))
             _add_geometry(element, solid)
         _add_colour(looks, f"{body.name}_colour", body.rgba)
     _fix(robot, body.name, body.pose)
@@ -123,8 +123,11 @@ def _fix(robot: ET.Element, link: str, pose: Pose) -> None:
     joint = ET.SubElement(robot, "joint", name=f"{_WORLD}_to_{link}", type="fixed")
     ET.SubElement(joint, "parent", link=_WORLD)
     ET.SubElement(joint, "child", link=link)
-    rpy = Rotation.from_quat(np.array(pose.xyzw)).as_euler("xyz")
-    ET.SubElement(joint, "origin", xyz=_numbers(pose.xyz), rpy=_numbers(tuple(rpy.tolist())))
+    ET.SubElement(joint, "origin", xyz=_numbers(pose.xyz), rpy=_rpy(pose))
+
+
+def _rpy(pose: Pose) -> str:
+    return _numbers(tuple(Rotation.from_quat(np.array(pose.xyzw)).as_euler("xyz").tolist()))
 
 
 def _number(value: float) -> str:

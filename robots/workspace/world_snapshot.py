@@ -44,11 +44,12 @@ class WorldPoseReader:
 
 
 def _held_part(snapshot: SimSnapshot, arm: ArmSummary, *, parts: tuple[str, ...]) -> str:
-    """Return the part that the tool of an arm holds, by contact; empty if none, or if its name is not measured."""
-    if arm.tool is None:
-        return ""
+    """Return the part that the tool of an arm holds, by contact, or the tool that its tool changer has.
+
+    Empty if none, or if its name is not measured.
+    """
     following = snapshot.held_part(arm.name)
-    if following:
+    if following or arm.tool is None:
         return following
     state = state_publisher(arm.tool.kind).state(snapshot.tool(arm.name), arm.tool, parts=parts)
     return state.part if isinstance(state, ToolHold) and state.held and state.part in parts else ""

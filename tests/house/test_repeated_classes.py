@@ -59,9 +59,12 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "LoopBlocked ~ LoopStall": "the event of a state that blocks; a block by anything, also outside a run",
     "MagnetResult ~ MagnetState": "how an action ended; a measurement",
     "Pose ~ PoseTarget": "a pose; a pose or the name of an entry",
+    "PutObstacle ~ ToolShape": "a state; a body of a tool, with its mass",
+    "PutTool ~ TakeTool": "one has a tool centre point; the other ends in a place",
     "SearchSummary ~ SearchView": "made from its fields, so that a page gets each of them; no field is written twice",
     "SetTransition ~ TransitionTaken": "an edit of a document; that a run took a transition",
     "SweepSummary ~ SweepView": "made from its fields, so that a page gets each of them; no field is written twice",
+    "ToolShape ~ UnknownBody": "fixed to a tool, with a mass; on its own, fixed or free",
     "Waypoint ~ WaypointTarget": "values for an arm; values or names of entries, and a blend or that of the state",
 }
 """Pairs of classes with nearly the same names of fields, and why they are not one class."""

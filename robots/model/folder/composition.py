@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.document import DataPath
+from engine.document import DataPath, ToolChangerSpec
 from engine.errors import CellError
 from robots.model.folder.calibration import apply_calibration, load_calibration
 from robots.model.folder.folder_document import FileReference, RobotDocument, ToolDocument
+from robots.model.folder.master_plate import MASTER_PLATE, add_master_plate
 from robots.model.folder.model_folder import ModelFolder
 from robots.model.joint_map import JointMap
 from robots.model.robot_model import JointFriction, JointLimits, RobotModel
@@ -38,8 +39,9 @@ def compose(
     *,
     calibration: Path | None = None,
     coupled_joints: bool = False,
+    changer: ToolChangerSpec | None = None,
 ) -> RobotModel:
-    """Return the model of an arm with a tool at its flange.
+    """Return the model of an arm with a tool at its flange, or with the master plate of a tool changer.
 
     Raises:
         CellError: descriptions are not installed, names clash, or the arm has no such option.
@@ -79,6 +81,9 @@ def compose(
         allowed += tuple(pair for pair in product(hand_side, tool_model.links) if shaped.issuperset(pair))
         prefix = _prefix(tool.document)
         allowed += tuple((prefix + a, prefix + b) for a, b in tool.allowed_collisions())
+    elif changer is not None:
+        allowed += tuple((link, MASTER_PLATE) for link in _rigid_to(robot, document.flange))
+        tool_link = add_master_plate(robot, changer, flange=document.flange)
     return RobotModel(
         name=document.robot,
         title=document.title,

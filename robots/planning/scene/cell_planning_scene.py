@@ -56,11 +56,15 @@ def known_obstacles(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) 
 def _solids(body: FixtureBody | PartBody) -> tuple[Solid, ...]:
     if body.shape == "tray" and isinstance(body, FixtureBody):
         return _tray(body)
-    return (Solid(shape=_shape(body)),)
+    plate = Solid(shape=_shape(body.shape, body.size_m, of=body.name))
+    if not isinstance(body, PartBody) or body.tool is None:
+        return (plate,)
+    more = (Solid(shape=_shape(s.shape, s.size_m, of=body.name), pose=s.at.pose()) for s in body.tool.shapes)
+    return (plate, *more)
 
 
-def _shape(body: FixtureBody | PartBody) -> Shape:
-    match body.shape, body.size_m:
+def _shape(shape: str, size_m: tuple[float, ...], *, of: str) -> Shape:
+    match shape, size_m:
         case "box", (x, y, z):
             return Box(size_m=(x, y, z))
         case "cylinder", (diameter, length):
@@ -69,8 +73,8 @@ def _shape(body: FixtureBody | PartBody) -> Shape:
             return Sphere(radius_m=diameter / 2.0)
         case _:
             raise CellError(
-                f"the size {list(body.size_m)} does not fit a {body.shape}",
-                where=body.name,
+                f"the size {list(size_m)} does not fit a {shape}",
+                where=of,
                 hint="box: three edge lengths; cylinder: diameter and length; sphere: diameter",
             )
 

@@ -66,6 +66,13 @@ class BrakeLegs(ControlCommand, frozen=True, kw_only=True, tag="brake_legs"):
     force_n: float
 
 
+class SwitchToolLock(ControlCommand, frozen=True, kw_only=True, tag="switch_tool_lock"):
+    """Turn the output of the tool changer of an arm on or off."""
+
+    arm: str
+    on: bool
+
+
 class MovePersonHand(ControlCommand, frozen=True, kw_only=True, tag="move_hand"):
     """Move the hand of a person."""
 
@@ -107,6 +114,7 @@ AnyCommand = (
     | PushSimBody
     | DriveAxis
     | BrakeLegs
+    | SwitchToolLock
     | MovePersonHand
     | RestoreWorld
     | ShutDownWorld

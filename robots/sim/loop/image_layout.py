@@ -6,6 +6,8 @@ from robots.sim.loop.snapshot import ArmSummary
 
 TOOL_FIELDS = 4
 """Numbers of a tool's command; unused ones are 0."""
+LOCK_FIELDS = 2
+"""Numbers of a tool changer: its output is on; steps until its piston arrives. Its couplings are in the physics."""
 
 
 class ImageLayout:
@@ -13,8 +15,8 @@ class ImageLayout:
 
     First the step count, then the physics state from MuJoCo, then where modules are, as in
     `robots.sim.loop.docked_modules`, then for each arm its set point and reflex (1 or 0), and for each tool its
-    command, as in `robots.sim.grip.mechanics.ToolMechanics`; last the motions and contacts of people, as in
-    `robots.sim.people.people_loop`.
+    command, as in `robots.sim.grip.mechanics.ToolMechanics`, for each tool changer its `locks`; last the motions and
+    contacts of people, as in `robots.sim.people.people_loop`.
     """
 
     def __init__(
@@ -27,6 +29,7 @@ class ImageLayout:
         self.set_points: dict[str, slice] = {}
         self.reflexes: dict[str, int] = {}
         self.tools: dict[str, slice] = {}
+        self.locks: dict[str, slice] = {}
         for arm in arms:
             self.set_points[arm.name] = slice(at, at + len(arm.joints))
             self.reflexes[arm.name] = at + len(arm.joints)
@@ -34,5 +37,8 @@ class ImageLayout:
             if arm.tool is not None:
                 self.tools[arm.name] = slice(at, at + TOOL_FIELDS)
                 at += TOOL_FIELDS
+            if arm.tool_changer:
+                self.locks[arm.name] = slice(at, at + LOCK_FIELDS)
+                at += LOCK_FIELDS
         self.people = slice(at, at + people_size)
         self.size = self.people.stop

@@ -28,6 +28,7 @@ from robots.sim.commands.world_commands import (
     ResetFreeParts,
     RestoreWorld,
     ShutDownWorld,
+    SwitchToolLock,
 )
 from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
@@ -40,6 +41,7 @@ from robots.sim.loop.held_parts import HeldParts
 from robots.sim.loop.hexapod_brakes import HexapodBrakes
 from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
 from robots.sim.loop.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
+from robots.sim.loop.tool_locks import ToolLocks
 from robots.sim.measures.run_measures import RunMeasures
 from robots.sim.people.people_loop import PeopleLoop
 from robots.sim.physics.cell_model import CellModel
@@ -94,6 +96,7 @@ class Simulation:
         self._hands = ExternalPushes(physics)
         self._axes, self._legs = DeviceAxes(cell, physics), HexapodBrakes(cell, physics)
         self._held_parts = HeldParts(cell, physics)
+        self._locks = ToolLocks(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, ToolMechanics] = {name: tool for name, tool in tools.items() if tool is not None}
@@ -102,6 +105,7 @@ class Simulation:
             physics,
             arms={name: arm.measured() for name, arm in self._arms.items()},
             tools=self._tools,
+            locks=self._locks.moving,
             step_s=self.step_s,
         )
         """What the world sums up while it runs."""
@@ -156,7 +160,7 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
-            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis() | BrakeLegs():
+            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis() | BrakeLegs() | SwitchToolLock():
                 self._follow(command)
             case HoldMotion():
                 for device in self._devices():
@@ -174,6 +178,7 @@ class Simulation:
             case ResetFreeParts():
                 self._qpos[self._cell.free_qpos] = self._start_poses
                 self._qvel[self._cell.free_dof] = 0.0
+                self._locks.reset()
                 self._modules.reset()
             case RestoreWorld():
                 self._restore(command.image)
@@ -183,16 +188,18 @@ class Simulation:
 
     def place_module(self, command: PlaceModule) -> ModulePlaced:
         """Plug or unplug a module from the next step on; nothing else of the state changes."""
-        numbers = [self._held_parts.number(name) for name in self._arms]
+        numbers = [self._held_number(name) for name in self._arms]
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
         return self._modules.place(command, held=held)
 
-    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs) -> None:
+    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | SwitchToolLock) -> None:
         match command:
             case DriveAxis():
                 self._axes.drive(command)
             case BrakeLegs():
                 self._legs.brake(command)
+            case SwitchToolLock():
+                self._locks.switch(command)
             case MirrorArm():
                 self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
             case MirrorTool():
@@ -217,6 +224,7 @@ class Simulation:
             arm.drive(step_s=self.step_s)
         self._hands.step(self.step_s)
         self._physics.finish_step()
+        self._locks.step()
         self._people.count()
         self.steps += 1
         self.measures.step(self.steps)
@@ -228,7 +236,9 @@ class Simulation:
         values[layout.time] = self.time_s
         for name, arm in self._arms.items():
             self._write_arm(values, layout.arms[name], arm)
-            values[layout.arms[name].held] = self._held_parts.number(name)
+            values[layout.arms[name].held] = self._held_number(name)
+            if name in self.image_layout.locks:
+                values[layout.arms[name].lock] = self._locks.read(name)
             if name in self._tools:
                 tool = self._tools[name]
                 values[layout.arms[name].tool] = (tool.drive.number, *tool.measured())
@@ -250,6 +260,8 @@ class Simulation:
         for name, tool in self._tools.items():
             command = tool.command()
             image[layout.tools[name]] = (*command, *(0.0,) * (TOOL_FIELDS - len(command)))
+        for name, place in layout.locks.items():
+            self._locks.write_image(name, image[place])
         self._people.write_image(image[layout.people])
 
     def _restore(self, image: Array) -> None:
@@ -264,6 +276,8 @@ class Simulation:
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
         for name, tool in self._tools.items():
             tool.take_over(tuple(image[layout.tools[name]].tolist()))
+        for name, place in layout.locks.items():
+            self._locks.take_over(name, image[place])
         self._people.take_over(image[layout.people])
         self.measures.restart(self.steps)
 
@@ -277,6 +291,10 @@ class Simulation:
             if arm.tool is not None:
                 self._qpos[arm.tool.qpos] = arm.tool.home
         self._physics.refresh()
+
+    def _held_number(self, arm: str) -> int:
+        """Return the number of the part that follows a driven tool or is in a tool changer, -1 for none."""
+        return max(self._held_parts.number(arm), self._locks.number(arm))
 
     def _devices(self) -> tuple[MotionExecutor | ToolDrive, ...]:
         return (*(a.control.motion for a in self._arms.values()), *(t.drive for t in self._tools.values()))
@@ -299,7 +317,13 @@ class Simulation:
 
 def _arm_summaries(cell: CellModel) -> tuple[ArmSummary, ...]:
     return tuple(
-        ArmSummary(name=arm.name, joints=arm.model.arm_joints, tool=tool_summary(arm.model.tool)) for arm in cell.arms
+        ArmSummary(
+            name=arm.name,
+            joints=arm.model.arm_joints,
+            tool=tool_summary(arm.model.tool),
+            tool_changer=placement.tool_changer is not None,
+        )
+        for arm, placement in zip(cell.arms, cell.scene.arms, strict=True)
     )
 
 

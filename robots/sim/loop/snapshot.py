@@ -16,14 +16,17 @@ from robots.sim.people.person_report import PersonSample, person_sample, report_
 
 # Motion number, progress, three measurements of the device, then the contacts.
 _TOOL_FIELDS = 5
+LOCK_FIELDS = 3
+"""Numbers of a tool changer: its output is on; it has a tool; a plate is at its face."""
 
 
 class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """The data required to command an arm; `tool` is None for a bare flange."""
+    """The data required to command an arm; `tool` is None for a bare flange, and with a tool changer."""
 
     name: str
     joints: tuple[str, ...]
     tool: ToolSummary | None = None
+    tool_changer: bool = False
 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
@@ -48,7 +51,8 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
 class ArmFields:
     """Positions of one arm's numbers: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` has six.
 
-    `separation` has the three numbers of `PermittedSpeed`, `held` the part that follows a driven tool, -1 for none.
+    `separation` has the three numbers of `PermittedSpeed`, `held` the part that follows a driven tool or is in the tool
+    changer, -1 for none. `lock` has output and sensors of a tool changer, as in `robots.sim.loop.tool_locks`.
     """
 
     number: int
@@ -59,6 +63,7 @@ class ArmFields:
     joints: slice
     dof: int
     tool: slice
+    lock: slice
     held: int
 
 
@@ -81,7 +86,8 @@ class SnapshotLayout:
             wrench = slice(separation.stop, separation.stop + 6)
             joints = slice(wrench.stop, wrench.stop + 5 * n)
             tool = slice(joints.stop, joints.stop + (_TOOL_FIELDS + arm.tool.contacts if arm.tool else 0))
-            held = tool.stop
+            lock = slice(tool.stop, tool.stop + (LOCK_FIELDS if arm.tool_changer else 0))
+            held = lock.stop
             arms[arm.name] = ArmFields(
                 number=at,
                 progress=at + 1,
@@ -91,6 +97,7 @@ class SnapshotLayout:
                 joints=joints,
                 dof=n,
                 tool=tool,
+                lock=lock,
                 held=held,
             )
             at = held + 1
@@ -160,9 +167,14 @@ class SimSnapshot:
         return ToolReading(time_s=self.time_s, values=(a, b, c), contacts=contacts)
 
     def held_part(self, name: str) -> str:
-        """Return the part that follows the driven tool of an arm; empty for none."""
+        """Return the part that follows the driven tool of an arm, or is in its tool changer; empty for none."""
         number = int(self._values[self._layout.arms[name].held])
         return self._layout.summary.parts[number] if number >= 0 else ""
+
+    def tool_lock(self, name: str) -> tuple[bool, bool, bool]:
+        """Return whether the output of a tool changer is on, whether it has a tool, whether a plate is at its face."""
+        on, locked, present = self._values[self._layout.arms[name].lock].tolist()
+        return bool(on), bool(locked), bool(present)
 
     def person(self, name: str) -> PersonSample:
         """Motion and contacts of one person."""

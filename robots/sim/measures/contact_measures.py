@@ -46,7 +46,8 @@ class ContactMeasures:
         cell: The world.
         physics: Its physics.
         beyond_flange: The bodies of each arm's tool.
-        moving: Returns whether the tool of an arm moves, by arm.
+        moving: Returns whether the tool of an arm, or the lock of its tool changer, moves, by arm; an arm with a bare
+            flange is missing.
         step_s: Duration of a step.
     """
 
@@ -121,7 +122,7 @@ class ContactMeasures:
         if contact.handler is not None:
             arm, _ = contact.handler
             handled.append(arm)
-            contact.grasp = contact.grasp or self._jumped or self._moving[arm]()
+            contact.grasp = contact.grasp or self._jumped or self._moving.get(arm, _is_never_moving)()
         if not contact.grasp:
             self.pressing = True
             self.touched |= contact.steps == 1
@@ -136,3 +137,7 @@ class ContactMeasures:
             self._values[_CONTACTS] += 1
             self._values[_CONTACT_S] += contact.steps * self._step_s
             self._values[_FORCE_N] = max(self._values[_FORCE_N], contact.force_n)
+
+
+def _is_never_moving() -> bool:
+    return False

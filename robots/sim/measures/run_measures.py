@@ -45,6 +45,7 @@ class RunMeasures:
         physics: Its physics.
         arms: Its arms.
         tools: The tools of those that have one.
+        locks: What tells whether the lock of a tool changer moves, for those that have one.
         step_s: Duration of a step.
     """
 
@@ -55,6 +56,7 @@ class RunMeasures:
         *,
         arms: Mapping[str, LoopArm],
         tools: Mapping[str, ToolMechanics],
+        locks: Mapping[str, Callable[[], bool]],
         step_s: float,
     ) -> None:
         summaries = {arm.name: tool_summary(arm.model.tool) for arm in cell.arms}
@@ -100,7 +102,7 @@ class RunMeasures:
             cell=cell,
             physics=physics,
             beyond_flange={name: arm.beyond_flange for name, arm in arms.items()},
-            moving={name: _moving(tool) for name, tool in tools.items()},
+            moving={**locks, **{name: _moving(tool) for name, tool in tools.items()}},
             step_s=step_s,
         )
         self._clearance = ClearanceMeasures(

@@ -20,6 +20,7 @@ from robots.sim.physics.person_spec import PersonIndices, add_person, body_names
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.plant_errors import PlantErrors
 from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF, ToolIndices, tool_body
+from robots.sim.physics.tool_coupling import add_couplings, place_shape
 
 Indices = NDArray[np.intp]
 
@@ -118,6 +119,7 @@ def cell_spec(scene: SimScene) -> Any:
     for arm in scene.arms:
         _add_arm(spec, arm, arm.robot(), scene.fixtures, errors)
     _add_people(spec, scene)
+    add_couplings(spec, scene)
     return spec
 
 
@@ -198,6 +200,9 @@ def _add_part(spec: Any, part: PartBody, errors: PlantErrors) -> None:
         geom.priority, geom.condim = _SLIPPERY_PRIORITY, max(int(geom.condim), 4)
         geom.solref, geom.solimp = list(PAD_SOLREF), list(PAD_SOLIMP)
         geom.friction[0] = part.friction
+    for index, one in enumerate(part.tool.shapes if part.tool is not None else ()):
+        more = _add_shape(body, f"{part.name}/{index}", one.shape, one.size_m, condim=3)
+        place_shape(more, one, mass_factor=errors.mass_factor(part))
 
 
 def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, condim: int) -> Any:

@@ -7,6 +7,7 @@ that build specifications.
 from __future__ import annotations
 
 import hashlib
+import math
 from typing import Any
 
 import numpy as np
@@ -95,6 +96,26 @@ class Physics:
     def set_dry_friction(self, joint: str, force: float) -> None:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
         self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force
+
+    def coupling_number(self, name: str) -> int:
+        """Return the number of a coupling of two bodies."""
+        return int(self._model.equality(name).id)
+
+    def couple(self, coupling: int, *, on: bool) -> None:
+        """Hold two bodies together from the next step on, or let them go."""
+        self._data.eq_active[coupling] = on
+
+    def is_coupled(self, coupling: int) -> bool:
+        """Return whether a coupling holds."""
+        return bool(self._data.eq_active[coupling])
+
+    def coupling_load(self, coupling: int) -> tuple[float, float]:
+        """Return the force, N, and the torque, N m, with which a coupling held in the last step."""
+        data = self._data
+        rows = np.flatnonzero((data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == coupling))
+        force = data.efc_force[rows]
+        # Rotations are those of half the angle.
+        return float(np.linalg.norm(force[:3])), 0.5 * float(np.linalg.norm(force[3:]))
 
     def members(self, body: int) -> NDArray[np.intp]:
         """Return the numbers of a body and of all its descendants."""
@@ -202,6 +223,10 @@ class Physics:
         attraction = self._attractions.setdefault(body, np.zeros(6))
         attraction[:3] += force
         attraction[3:] += cross(point - self._data.xipos[body], force)
+
+    def apart_m(self, body: int, other: int) -> float:
+        """Return the distance of the origins of two bodies at the start of the last step."""
+        return math.dist(self._xpos[body].tolist(), self._xpos[other].tolist())
 
     def seen_from(self, body: int, other: int) -> Array:
         """Return the origin of another body in the frame of a body, (3,), at the start of the last step."""

@@ -45,10 +45,14 @@ class PlantErrors:
         return Pose(xyz=(x, y, z), xyzw=(qx, qy, qz, qw), frame=arm.base.frame)
 
     def mass_kg(self, part: PartBody) -> float:
-        """Return what a part really weighs."""
+        """Return what a part really weighs; of a tool what its plate does."""
+        return part.mass_kg * self.mass_factor(part)
+
+    def mass_factor(self, part: PartBody) -> float:
+        """Return what the real masses of a part are multiplied with."""
         if self._ideal:
-            return part.mass_kg
-        return part.mass_kg * (1.0 + self._preset.payload_spread * self._draws(f"{part.name}/mass").uniform(-1.0, 1.0))
+            return 1.0
+        return 1.0 + self._preset.payload_spread * self._draws(f"{part.name}/mass").uniform(-1.0, 1.0)
 
     def apply(self, spec: Any, model: RobotModel, *, name: str) -> None:
         """Change the specification of the arm `name`: its links and those of its tool, and the joints of the arm."""

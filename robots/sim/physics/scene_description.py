@@ -27,7 +27,7 @@ def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescri
     for fixture in (*scene.fixtures, *scene.unknown_fixtures):
         geometries += _fixture(fixture)
     geometries += leg_geometries(scene)
-    geometries += [_part(part) for part in (*scene.parts, *scene.unknown_parts)]
+    geometries += [one for part in (*scene.parts, *scene.unknown_parts) for one in _part(part)]
     geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
     return SceneDescription(geometries=tuple(geometries))
 
@@ -75,9 +75,24 @@ def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
     ]
 
 
-def _part(part: PartBody) -> VisualGeometry:
+def _part(part: PartBody) -> list[VisualGeometry]:
     kind, size = _shape(part.shape, part.size_m)
-    return VisualGeometry(name=part.name, frame=part.name, kind=kind, size_m=size, rgba=part.rgba)
+    drawn = [VisualGeometry(name=part.name, frame=part.name, kind=kind, size_m=size, rgba=part.rgba)]
+    for index, one in enumerate(part.tool.shapes if part.tool is not None else ()):
+        kind, size = _shape(one.shape, one.size_m)
+        at = one.at.pose()
+        drawn.append(
+            VisualGeometry(
+                name=f"{part.name}/{index}",
+                frame=part.name,
+                kind=kind,
+                size_m=size,
+                rgba=part.rgba,
+                xyz=at.xyz,
+                xyzw=at.xyzw,
+            )
+        )
+    return drawn
 
 
 def _shape(shape: str, size_m: tuple[float, ...]) -> tuple[str, tuple[float, ...]]:

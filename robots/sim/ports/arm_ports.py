@@ -26,11 +26,12 @@ def arm_ports(scene: SimScene, host: WorldHost, board: MotionRegistry) -> dict[s
 
 def arm_summaries(scene: SimScene) -> dict[str, ArmSummary]:
     """Return what each arm is, by its name."""
-    robots = {placement.name: placement.robot() for placement in scene.arms}
-    return {
-        name: ArmSummary(name=name, joints=robot.arm_joints, tool=tool_summary(robot.tool))
-        for name, robot in robots.items()
-    }
+    return {placement.name: _summary(placement) for placement in scene.arms}
+
+
+def _summary(placement: ArmPlacement) -> ArmSummary:
+    robot, changer = placement.robot(), placement.tool_changer is not None
+    return ArmSummary(name=placement.name, joints=robot.arm_joints, tool=tool_summary(robot.tool), tool_changer=changer)
 
 
 def output_ports(scene: SimScene) -> dict[str, SimOutputPort]:

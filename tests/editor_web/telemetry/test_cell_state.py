@@ -13,6 +13,7 @@ from engine.messages.device_state import DeviceLink, DeviceState
 from engine.messages.sensing import CameraInfo, CameraIntrinsics
 from engine.project import BusInspector
 from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState
+from engine.skills.tool_changer import ToolChangerState
 from tests.editor_web.fake_backend import FakeBackend
 
 LENS = CameraIntrinsics(width_px=4, height_px=4, fx_px=2.0, fy_px=2.0, cx_px=1.5, cy_px=1.5)
@@ -107,3 +108,13 @@ async def test_modules_say_where_they_are_plugged() -> None:
         frame = state_of(page)
         assert frame is not None
         assert frame.modules == {"trolley": "", "rack": "east"}
+
+
+async def test_the_tool_that_a_tool_changer_has_is_what_its_arm_holds() -> None:
+    async with SkillBus(Clock()) as bus:
+        backend = FakeBackend()
+        backend.known_inspector = BusInspector(bus)
+        bus.topic("arm/tool_changer", ToolChangerState).publish(ToolChangerState(tool="probe", lock="locked"))
+        page = PageSubscriptions(backend)
+        page.look(DataSubscription(cell=True))
+        assert state_of(page) == CellStateFrame(poses={}, cameras={}, tools={"arm": ToolHolds(held=True, part="probe")})

@@ -77,6 +77,17 @@ def test_topics_belong_to_the_item_whose_name_they_have(cell: Cell) -> None:
     }
 
 
+def test_a_tool_changer_is_the_tool_of_its_arm(tmp_path: Path) -> None:
+    text = CELL.replace("gripper: {model: panda_hand}", "tool_changer: {mass_kg: 0.4}")
+    (tmp_path / "cell.yaml").write_text(text, encoding="utf-8")
+    topics = ("left/status", "left/tool_changer")
+    found = {one.path: one for one in items_of_cell(load_cell(tmp_path / "cell.yaml"), name="b", topics=topics).items}
+    item = found["robots/left/tool_changer"]
+    assert (item.kind, item.name, item.owner) == ("tool", "left", "robots/left")
+    assert (item.topics, found["robots/left"].topics) == (("left/tool_changer",), ("left/status",))
+    assert (item.text, item.line) == ("tool_changer: {mass_kg: 0.4}   # fingers of rubber", 9)
+
+
 @pytest.mark.parametrize(
     ("path", "line", "text"),
     [

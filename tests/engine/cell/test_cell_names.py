@@ -16,8 +16,10 @@ cell: bench
 world: {kind: mujoco}
 robots:
   left: {model: panda, gripper: {model: panda_hand}}
-  right: {model: ur10, outputs: {gripper: 2}}
-parts: {plate: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1}}
+  right: {model: ur10, outputs: {gripper: 2}, tool_changer: {}}
+parts:
+  plate: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1}
+  probe: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1, tool: {tcps: {tip: {}}}}
 frames: {slot: {at: {xyz: [0.3, 0, 0]}}}
 """
 
@@ -36,6 +38,9 @@ def names(tmp_path: Path) -> CellNames:
         ("gripper", "right", "the cell bench has no robot with a gripper `right`", "`right` is a robot"),
         ("arm_frame", "plate", "the cell bench has no frame for the poses of an arm `plate`", "`plate` is a part"),
         ("output", "right/linear_axis", "`right` of the cell bench has no output `linear_axis`", "known: 0, 1, 2, 3"),
+        ("tool_changer", "left", "the cell bench has no robot with a tool changer `left`", "`left` is a robot"),
+        ("changeable_tool", "plate", "the cell bench has no part that is a tool `plate`", "`plate` is a part"),
+        ("tool_point", "probe/tp", "`probe` of the cell bench has no tool centre point `tp`", "did you mean tip?"),
         ("tool", "right/gripper", "`right` of the cell bench has no tool `gripper`", "there are none"),
     ],
 )

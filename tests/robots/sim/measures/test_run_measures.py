@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from engine.skills.arm_control import ControlSettings
 from robots.port import Array
 from robots.sim.commands.world_commands import MoveTool, RestoreWorld
+from robots.sim.loop.simulation import Simulation
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.measures.measure_layout import MeasureLayout
 from robots.sim.measures.run_measures import RunMeasures
 from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.realistic import realistic
-from tests.robots.sim.sim_cell import ABOVE_PART, AT_PART, HOME, box, one_arm
+from tests.robots.sim.sim_cell import ABOVE_PART, AT_PART, HOME, LEFT, box, one_arm
 from tests.robots.sim.stepped import SteppedArm
 
 PART = "part"
@@ -156,6 +158,18 @@ def test_open_fingers_that_push_a_part_are_a_contact(cell: CellModel, reached: A
     assert 0.1 < found["cell.contact_s"] < 1.5
     assert found["cell.contact_force_max_n"] > 0.5
     assert 0.5 < found["left.force_max_n"] < found["cell.contact_force_max_n"]
+
+
+def test_a_bare_flange_that_pushes_a_part_is_a_contact() -> None:
+    """It has no fingers that could take the part."""
+    bare = replace(one_arm(), arms=(replace(LEFT, gripper=None),), gravity=False)
+    empty = Simulation(build_cell(bare))
+    values = empty.layout.new_array()
+    empty.write_snapshot(values)
+    x, y, z = SimSnapshot(empty.layout, values).frame(f"left/{LEFT.robot().flange_link}")[0].tolist()
+    arm = SteppedArm(build_cell(replace(bare, parts=(box(PART, (x, y, z - 0.06)),))))
+    arm.run(0.1)
+    assert measures(arm)["cell.contacts"] == 1.0
 
 
 def test_measures_begin_again_in_a_restored_world(cell: CellModel, reached: Array) -> None:
