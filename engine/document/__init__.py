@@ -14,7 +14,7 @@ from engine.document.cell import (
     load_cell,
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
-from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec
+from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec, HingeAxis, SlideAxis
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -78,6 +78,7 @@ __all__ = [
     "Fixture",
     "ForEachSpec",
     "GuardSpec",
+    "HingeAxis",
     "Jitter",
     "KeySignature",
     "MachineSpec",
@@ -93,6 +94,7 @@ __all__ = [
     "RealismName",
     "RetrySpec",
     "RobotSpec",
+    "SlideAxis",
     "SpeedAndSeparationMonitoring",
     "StateSignature",
     "StrictModel",

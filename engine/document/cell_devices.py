@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import Annotated, Literal
+from typing import Annotated
 
 from msgspec import Meta
 from msgspec.structs import replace
@@ -26,21 +26,17 @@ LONGEST_TURN_RAD = 5.5
 """The stroke of a hinge; beyond it, its two ends could not be told apart by its pose."""
 
 
-class DeviceAxis(StrictModel, frozen=True, kw_only=True):
-    """A fixture on a pneumatic cylinder: 0 where the document places it, `stroke` at its other end.
+class _Axis(StrictModel, frozen=True, kw_only=True, tag_field="joint"):
+    """A fixture on a pneumatic cylinder: 0 where the document places it, its stroke at its other end.
 
-    With `output` on, its air presses it to `stroke`, else back to 0. With an `output_back` too, it is pressed by
-    the one that is on; with none on, the valve is in its middle position and vents. `speed` is that of the free
-    axis, `force` what it presses with at rest. Without air a `self_holding` axis, one with a toggle or a check
-    valve, keeps its place and its force; any other lets go.
+    With `output` on, its air presses it to its stroke, else back to 0. With an `output_back` too, it is pressed by
+    the one that is on; with none on, the valve is in its middle position and vents. Its speed is that of the free
+    axis, its force or torque what it presses with at rest. Without air a `self_holding` axis, one with a toggle or a
+    check valve, keeps its place and its force; any other lets go.
     """
 
     body: Annotated[str, Meta(min_length=1, description="The fixture that moves")]
-    joint: Literal["slide", "hinge"] = "slide"
     along: Annotated[Vector3, Meta(description="Direction of the slide, or axis of the hinge, in the fixture's frame")]
-    stroke: Annotated[float, Meta(gt=0.0, description="The other end of the axis in m or rad; 0 is the first")]
-    force: Annotated[float, Meta(gt=0.0, le=1e5, description="Force in N, for a hinge torque in N m")]
-    speed: Annotated[float, Meta(gt=0.0, le=10.0, description="Speed of the free axis in m/s or rad/s")]
     mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of what moves")] = 0.5
     friction: Annotated[float, Meta(gt=0.0, le=2.0, description="Coefficient of friction of what presses")] = 0.5
     against: Annotated[tuple[str, ...], Meta(description="Fixtures with the same surface, such as a fixed jaw")] = ()
@@ -49,8 +45,32 @@ class DeviceAxis(StrictModel, frozen=True, kw_only=True):
     output_back: Name | None = None
 
 
+class SlideAxis(_Axis, frozen=True, kw_only=True, tag="slide"):
+    """An axis that slides."""
+
+    stroke_m: Annotated[float, Meta(gt=0.0, description="The other end of the axis in metres; 0 is the first")]
+    force_n: Annotated[float, Meta(gt=0.0, le=1e5, description="Force at rest in newton")]
+    speed_m_s: Annotated[float, Meta(gt=0.0, le=10.0, description="Speed of the free axis in m/s")]
+
+
+class HingeAxis(_Axis, frozen=True, kw_only=True, tag="hinge"):
+    """An axis that turns."""
+
+    stroke_rad: Annotated[
+        float, Meta(gt=0.0, le=LONGEST_TURN_RAD, description="The other end of the axis in radians; 0 is the first")
+    ]
+    torque_nm: Annotated[float, Meta(gt=0.0, le=1e5, description="Torque at rest in newton metres")]
+    speed_rad_s: Annotated[float, Meta(gt=0.0, le=10.0, description="Speed of the free axis in rad/s")]
+
+
+DeviceAxis = SlideAxis | HingeAxis
+
+
 class DeviceSensor(StrictModel, frozen=True, kw_only=True):
-    """A switch: on while its axis is within the limits, or while there is air (`air: true`)."""
+    """A switch: on while its axis is within the limits, or while there is air (`air: true`).
+
+    The limits are in metres for an axis that slides, in radians for one that turns.
+    """
 
     axis: Name | None = None
     at_least: float | None = None
@@ -172,8 +192,6 @@ def _axis_problems(
         moved[body] = f"`{key}` of `{name}`"
         if body in fixtures and (fixtures[body].spring is not None or fixtures[body].shape == "tray"):
             yield (*path, "body"), f"`{body}` cannot be moved by an axis", "choose a box or cylinder without a spring"
-        if axis.joint == "hinge" and axis.stroke > LONGEST_TURN_RAD:
-            yield (*path, "stroke"), f"a hinge turns by at most {LONGEST_TURN_RAD:g} rad", "give a smaller stroke"
         if math.hypot(*axis.along) < 1e-6:
             yield (*path, "along"), "this direction has no length", "[1, 0, 0] is along the x axis of the fixture"
         for output in (axis.output, axis.output_back):

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.bus import SkillBus
 from engine.clock import Clock
-from engine.document import Cell, DeviceAxis, DeviceSpec
+from engine.document import Cell, DeviceAxis, DeviceSpec, SlideAxis
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
@@ -93,7 +93,7 @@ class SimulatedDevice:
             raise RobotError(f"{axis.body} is not in the cell", hint="plug its module first")
         moved = RigidTransform.from_pose(home).inverse().then(RigidTransform.from_pose(self.pose(axis)))
         along = np.array(axis.along) / np.linalg.norm(axis.along)
-        if axis.joint == "slide":
+        if isinstance(axis, SlideAxis):
             return float(moved.xyz @ along)
         angle = float(2.0 * np.arctan2(moved.xyzw[:3] @ along, moved.xyzw[3]))
         # From a little before 0 on: an axis rests a little before its end.

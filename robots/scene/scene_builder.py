@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import CellDocument, Fixture, Person, RobotSpec, UnknownBody
+from engine.document import CellDocument, DeviceAxis, Fixture, HingeAxis, Person, RobotSpec, UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.jitter import jitter_pose
@@ -57,18 +57,20 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
 def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
     bodies = {name: _fixture(name, fixture) for name, fixture in document.fixtures.items()}
     for axis in (axis for device in document.devices.values() for axis in device.axes.values()):
-        joint = AxisBody(
-            hinge=axis.joint == "hinge",
-            along=axis.along,
-            stroke=axis.stroke,
-            force=axis.force,
-            speed=axis.speed,
-            mass_kg=axis.mass_kg,
-        )
+        joint = _axis(axis)
         bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
         for name in axis.against:
             bodies[name] = msgspec.structs.replace(bodies[name], jaw_friction=axis.friction)
     return tuple(bodies.values())
+
+
+def _axis(axis: DeviceAxis) -> AxisBody:
+    if isinstance(axis, HingeAxis):
+        stroke, force, speed = axis.stroke_rad, axis.torque_nm, axis.speed_rad_s
+    else:
+        stroke, force, speed = axis.stroke_m, axis.force_n, axis.speed_m_s
+    hinge = isinstance(axis, HingeAxis)
+    return AxisBody(hinge=hinge, along=axis.along, stroke=stroke, force=force, speed=speed, mass_kg=axis.mass_kg)
 
 
 def _fixture(name: str, fixture: Fixture) -> FixtureBody:
