@@ -14,6 +14,7 @@ from engine.document.cell import (
     load_cell,
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
+from engine.document.cell_bonds import BondSpec, joined_groups
 from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec, HingeAxis, SlideAxis
 from engine.document.cell_perception import (
     DepthCamera,
@@ -62,6 +63,7 @@ __all__ = [
     "Behavior",
     "BehaviorDocument",
     "BehaviorSurvey",
+    "BondSpec",
     "Cell",
     "CellDocument",
     "CircularReference",
@@ -111,6 +113,7 @@ __all__ = [
     "compile_template",
     "decode_document",
     "docks_at_start",
+    "joined_groups",
     "load_behavior",
     "load_cell",
     "load_module",

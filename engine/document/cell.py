@@ -16,6 +16,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
+from engine.document.cell_bonds import BondSpec, require_bonds
 from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
 from engine.document.cell_modules import (
@@ -106,6 +107,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     ] = {}
     modules: dict[Name, ModuleSpec] = {}
     devices: dict[Name, DeviceSpec] = {}
+    bonds: dict[Name, BondSpec] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -142,7 +144,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     def with_modules(self, modules: Mapping[str, Module]) -> CellDocument:
         """Return the same cell with its connectors as frames, and with what stands on its modules."""
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
-        parts, cameras, devices = dict(self.parts), dict(self.cameras), dict(self.devices)
+        parts, cameras, devices, bonds = dict(self.parts), dict(self.cameras), dict(self.devices), dict(self.bonds)
         for name, module in modules.items():
             added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
             frames |= added.frames
@@ -150,7 +152,10 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
             parts |= added.parts
             cameras |= added.cameras
             devices |= added.devices
-        return replace(self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras, devices=devices)
+            bonds |= added.bonds
+        return replace(
+            self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras, devices=devices, bonds=bonds
+        )
 
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
@@ -242,6 +247,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
     on_bus = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
     require_devices(document.devices, source, fixtures=document.fixtures, taken=on_bus)
+    require_bonds(document.bonds, source, parts=document.parts, fixtures=document.fixtures)
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)

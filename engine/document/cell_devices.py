@@ -14,6 +14,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture
+from engine.document.cell_bonds import BondKind
 from engine.document.duration import Duration
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel
@@ -41,6 +42,7 @@ class _Axis(StrictModel, frozen=True, kw_only=True, tag_field="joint"):
     friction: Annotated[float, Meta(gt=0.0, le=2.0, description="Coefficient of friction of what presses")] = 0.5
     against: Annotated[tuple[str, ...], Meta(description="Fixtures with the same surface, such as a fixed jaw")] = ()
     self_holding: bool = False
+    cuts: Annotated[tuple[BondKind, ...], Meta(description="Kinds of bonds that its fixture, a blade, cuts")] = ()
     output: Name
     output_back: Name | None = None
 

@@ -10,7 +10,7 @@ import msgspec
 from engine.document import CellDocument, DeviceAxis, Fixture, HingeAxis, Person, RobotSpec, UnknownBody
 from engine.errors import CellError
 from robots.model.registry import model_location
-from robots.scene.jitter import jitter_pose
+from robots.scene.joined_bodies import drawn_bonds, part_poses
 from robots.scene.sim_scene import ArmPlacement, AxisBody, FixtureBody, PartBody, PersonBody, Rgba, SimScene
 
 Resolve = Callable[[str], Path]
@@ -41,6 +41,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items()),
         fixtures=_fixtures(document),
         parts=tuple(_parts(document, seed)),
+        bonds=drawn_bonds(document.bonds, seed=seed),
         people=tuple(_person(name, person) for name, person in document.people.items()),
         frames=document.fixed_frames,
         unknown_fixtures=tuple(
@@ -69,8 +70,15 @@ def _axis(axis: DeviceAxis) -> AxisBody:
         stroke, force, speed = axis.stroke_rad, axis.torque_nm, axis.speed_rad_s
     else:
         stroke, force, speed = axis.stroke_m, axis.force_n, axis.speed_m_s
-    hinge = isinstance(axis, HingeAxis)
-    return AxisBody(hinge=hinge, along=axis.along, stroke=stroke, force=force, speed=speed, mass_kg=axis.mass_kg)
+    return AxisBody(
+        hinge=isinstance(axis, HingeAxis),
+        along=axis.along,
+        stroke=stroke,
+        force=force,
+        speed=speed,
+        mass_kg=axis.mass_kg,
+        cuts=axis.cuts,
+    )
 
 
 def _fixture(name: str, fixture: Fixture) -> FixtureBody:
@@ -124,10 +132,8 @@ def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
 
 def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
     bodies: list[PartBody] = []
+    poses = part_poses(document.parts, document.bonds, seed=seed)
     for name, part in document.parts.items():
-        pose = part.at.pose()
-        if seed is not None:
-            pose = jitter_pose(pose, name=name, seed=seed, xy_m=part.jitter.xy_m, yaw_rad=part.jitter.yaw_rad)
         bodies.append(
             PartBody(
                 name=name,
@@ -136,7 +142,7 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
                 mass_kg=part.mass_kg,
                 magnetic=part.magnetic,
                 friction=part.friction,
-                pose=pose,
+                pose=poses[name],
                 rgba=_rgba(part.color),
             )
         )

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import RealismName, arm_reach_m
+from engine.document import BondSpec, RealismName, arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
@@ -70,6 +70,8 @@ class AxisBody(msgspec.Struct, frozen=True, kw_only=True):
     force: float
     speed: float
     mass_kg: float
+    cuts: tuple[str, ...] = ()
+    """The kinds of bonds that its body cuts."""
 
 
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -155,6 +157,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     With `separation` the speed of all arms follows their measured distance from people.
     The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
     The bodies of all `modules` are in it, plugged or not: a world is built once, and modules come and go in it.
+    The `bonds` have the limits that were drawn for this world.
     """
 
     step_s: float = 0.001
@@ -173,3 +176,4 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     unknown_parts: tuple[PartBody, ...] = ()
     separation: SeparationRule | None = None
     modules: tuple[ModuleBodies, ...] = ()
+    bonds: dict[str, BondSpec] = {}

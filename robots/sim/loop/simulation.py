@@ -32,6 +32,7 @@ from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.bonds import Bonds
 from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
@@ -66,7 +67,9 @@ class Simulation:
         self._set_home()
         # Before modules go: the same for all worlds of one scene.
         model = fingerprint(cell.model)
-        self._modules = DockedModules(cell, physics)
+        self._bonds = Bonds(cell, physics)
+        self._modules = DockedModules(cell, physics, joined_to=self._bonds.joined_to)
+        self._bonds.keep_apart(self._modules.away)
         self._contacts = ContactReader(cell, physics)
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
         driven = {placement.name for placement in cell.scene.arms if placement.driven}
@@ -112,6 +115,7 @@ class Simulation:
             arms,
             state_size=physics.state_size,
             modules_size=self._modules.image_size,
+            bonds_size=self._bonds.image_size,
             people_size=self._people.image_size,
         )
         self.summary = _summary(cell, arms, model=model, image=self.image_layout)
@@ -173,6 +177,8 @@ class Simulation:
                 self._qpos[self._cell.free_qpos] = self._start_poses
                 self._qvel[self._cell.free_dof] = 0.0
                 self._modules.reset()
+                self._bonds.reset()
+                self._bonds.keep_apart(self._modules.away)
             case RestoreWorld():
                 self._restore(command.image)
             case StopAll() | ShutDownWorld():
@@ -183,7 +189,9 @@ class Simulation:
         """Plug or unplug a module from the next step on; nothing else of the state changes."""
         numbers = [self._held_parts.number(name) for name in self._arms]
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
-        return self._modules.place(command, held=held)
+        placed = self._modules.place(command, held=held)
+        self._bonds.keep_apart(placed.away)
+        return placed
 
     def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis) -> None:
         match command:
@@ -212,6 +220,7 @@ class Simulation:
             arm.drive(step_s=self.step_s)
         self._hands.step(self.step_s)
         self._physics.finish_step()
+        self._bonds.step()
         self._people.count()
         self.steps += 1
         self.measures.step(self.steps)
@@ -232,6 +241,7 @@ class Simulation:
         values[layout.quaternions] = wxyz.reshape(-1)
         self._people.write_report(values[layout.people])
         values[layout.measures] = self.measures.summed_up
+        self._bonds.write_report(values[layout.bonds])
 
     def write_image(self, image: Array) -> None:
         """Write the complete state into an array of `image_layout`'s size."""
@@ -239,6 +249,7 @@ class Simulation:
         image[layout.steps] = self.steps
         self._physics.read_state(image[layout.physics])
         self._modules.write_image(image[layout.modules])
+        self._bonds.write_image(image[layout.bonds])
         for name, arm in self._arms.items():
             image[layout.set_points[name]] = arm.control.motion.position
             image[layout.reflexes[name]] = arm.control.reflex
@@ -254,6 +265,7 @@ class Simulation:
         self._hands.let_go()
         self._modules.take_over(image[layout.modules])
         self._physics.rest_at(image[layout.physics])
+        self._bonds.take_over(image[layout.bonds], away=self._modules.away)
         self._held_parts.restart()
         for name, arm in self._arms.items():
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
@@ -309,4 +321,5 @@ def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image
         image_size=image.size,
         modules_at=image.modules.start,
         people=tuple(person.name for person in cell.people),
+        bonds=tuple(cell.scene.bonds),
     )

@@ -14,6 +14,7 @@ from engine.messages import Pose
 from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
+from robots.sim.physics.bond_constraint import add_bonds
 from robots.sim.physics.device_axis import add_axis, add_jaw
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
@@ -113,6 +114,7 @@ def cell_spec(scene: SimScene) -> Any:
     for arm in scene.arms:
         _add_arm(spec, arm, arm.robot(), scene.fixtures, errors)
     _add_people(spec, scene)
+    add_bonds(spec, scene.bonds)
     return spec
 
 

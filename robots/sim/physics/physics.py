@@ -7,6 +7,7 @@ that build specifications.
 from __future__ import annotations
 
 import hashlib
+import math
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ mujoco: Any = load_mujoco()
 
 # Distances are measured up to this one.
 _FAR_M = 100.0
+_CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 
 
 class Physics:
@@ -90,6 +92,37 @@ class Physics:
     def set_dry_friction(self, joint: str, force: float) -> None:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
         self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force
+
+    def bond_number(self, name: str) -> int:
+        """Return the number of the constraint of a bond."""
+        return int(self._model.equality(name).id)
+
+    def set_bond(self, bond: int, *, joined: bool) -> None:
+        """Let the constraint of a bond act, or not, from the next step on; it is part of the state."""
+        self._data.eq_active[bond] = joined
+
+    def bond_loads(self, bonds: NDArray[np.intp]) -> list[tuple[float, float]]:
+        """Return the force in N and the torque in N m, about its place, that each bond carried in the last step."""
+        data = self._data
+        numbers = data.efc_id[: data.ne]
+        loads: list[float] = data.efc_force[: data.ne].tolist()
+        first: list[int] = np.searchsorted(numbers, bonds).tolist()
+        last: list[int] = np.searchsorted(numbers, bonds, side="right").tolist()
+        # The rows of a weld's rotation are those of a quaternion, of half the angle.
+        return [
+            (math.hypot(*loads[a : min(a + 3, b)]), 0.5 * math.hypot(*loads[a + 3 : b]))
+            for a, b in zip(first, last, strict=True)
+        ]
+
+    def gap_m(self, geom: int, point: Array) -> float:
+        """Return the distance of a point in the world from a box or an upright cylinder, 0 inside."""
+        inside = np.abs((point - self.geom_position(geom)) @ self.geom_axes(geom))
+        size: Array = self._model.geom_size[geom]
+        if int(self._model.geom_type[geom]) == _CYLINDER:
+            beyond = np.array([np.hypot(inside[0], inside[1]) - size[0], inside[2] - size[1]])
+        else:
+            beyond = inside - size
+        return float(np.linalg.norm(np.maximum(beyond, 0.0)))
 
     def members(self, body: int) -> NDArray[np.intp]:
         """Return the numbers of a body and of all its descendants."""
