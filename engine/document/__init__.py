@@ -15,7 +15,16 @@ from engine.document.cell import (
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
 from engine.document.cell_bonds import BondSpec, joined_groups
-from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec, HingeAxis, SlideAxis
+from engine.document.cell_devices import (
+    DeviceAxis,
+    DeviceBelt,
+    DevicePosition,
+    DeviceSensor,
+    DeviceSpec,
+    HingeAxis,
+    LightBarrier,
+    SlideAxis,
+)
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -73,6 +82,7 @@ __all__ = [
     "DepthCamera",
     "DetectionRate",
     "DeviceAxis",
+    "DeviceBelt",
     "DevicePosition",
     "DeviceSensor",
     "DeviceSpec",
@@ -83,6 +93,7 @@ __all__ = [
     "HingeAxis",
     "Jitter",
     "KeySignature",
+    "LightBarrier",
     "MachineSpec",
     "Module",
     "MujocoWorld",

@@ -11,13 +11,14 @@ import numpy as np
 
 from engine.bus import SkillBus
 from engine.clock import Clock
-from engine.document import Cell, DeviceAxis, DeviceSpec, SlideAxis
+from engine.document import Cell, DeviceAxis, DeviceSensor, DeviceSpec, LightBarrier, SlideAxis
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
 from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer
+from robots.devices.light_barrier import is_interrupted
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
 from robots.scene.sim_scene import SimScene
@@ -33,20 +34,21 @@ class _PortMemo(msgspec.Struct, frozen=True, kw_only=True):
     outputs: dict[str, bool]
     pressed: dict[str, float]
     air: bool
+    power: bool = True
     stuck: tuple[str, ...]
     wrong: dict[str, bool]
     server: DeviceMemo
 
 
 class SimulatedDevice:
-    """Implements `DevicePort` on a simulated world; `air`, `stuck` and `wrong` are its faults."""
+    """Implements `DevicePort` on a simulated world; `air`, `power`, `stuck` and `wrong` are its faults."""
 
     def __init__(self, device: DeviceSpec, world: SimWorld) -> None:
         self._device = device
         self._world = world
         self.outputs: dict[str, bool] = dict.fromkeys(device.outputs, False)
         self.pressed: dict[str, float] = dict.fromkeys(device.axes, 0.0)
-        self.air = True
+        self.air = self.power = True
         self.stuck: set[str] = set()
         self.wrong: dict[str, bool] = {}
 
@@ -64,11 +66,20 @@ class SimulatedDevice:
     def sensors(self) -> Mapping[str, bool]:
         """What the sensors say."""
         axes = self.axes
-        true = {
-            name: self.air if sensor.axis is None else sensor.is_on(axes[sensor.axis])
-            for name, sensor in self._device.sensors.items()
-        }
-        return true | self.wrong
+        return {name: self._reads(sensor, axes) for name, sensor in self._device.sensors.items()} | self.wrong
+
+    def _reads(self, sensor: DeviceSensor, axes: Mapping[str, float]) -> bool:
+        if sensor.beam is not None:
+            return self._is_interrupted(sensor.beam)
+        return self.air if sensor.axis is None else sensor.is_on(axes[sensor.axis])
+
+    def _is_interrupted(self, beam: LightBarrier) -> bool:
+        home, scene = self._world.modules.home_of(beam.body), self._world.modules.scene
+        if home is None:
+            return False
+        measured = self._world.measured()
+        poses = [(part, RigidTransform.of(*measured.frame(part.name))) for part in (*scene.parts, *scene.unknown_parts)]
+        return is_interrupted(beam, RigidTransform.from_pose(home), poses)
 
     def drive(self) -> None:
         """Send what presses each axis to the world."""
@@ -80,6 +91,10 @@ class SimulatedDevice:
             locked = name in self.stuck
             force = 0.0 if locked else self.pressed[name]
             self._world.host.send(DriveAxis(fixture=axis.body, direction=force, locked=locked))
+        for name, belt in self._device.belts.items():
+            back = self.outputs[belt.output_back] if belt.output_back is not None else False
+            runs = (float(self.outputs[belt.output]) - float(back)) * self.power
+            self._world.host.send(DriveAxis(fixture=belt.body, direction=runs, locked=name in self.stuck))
 
     def pose(self, axis: DeviceAxis) -> Pose:
         """Return the pose of a moved fixture in the world."""
@@ -145,6 +160,7 @@ class SimulatedDevices:
                 outputs=port.outputs,
                 pressed=port.pressed,
                 air=port.air,
+                power=port.power,
                 stuck=tuple(sorted(port.stuck)),
                 wrong=port.wrong,
                 server=self._servers[name].memo,
@@ -164,7 +180,7 @@ class SimulatedDevices:
                 continue
             port = self._ports[name]
             port.outputs, port.pressed, port.wrong = dict(known.outputs), dict(known.pressed), dict(known.wrong)
-            port.air, port.stuck = known.air, set(known.stuck)
+            port.air, port.power, port.stuck = known.air, known.power, set(known.stuck)
             self._servers[name].memo = known.server
         self._drive()
         self._publish_poses()
@@ -221,10 +237,11 @@ class SimulatedDevices:
         async def break_device(request: SimulateDeviceFault) -> SwitchResult:
             port, device = self._ports[name], self._devices[name]
             fault = request.fault
-            for word, known in ((fault.stuck, device.axes), (fault.sensor, device.sensors)):
+            moving = {**device.axes, **device.belts}
+            for word, known in ((fault.stuck, moving), (fault.sensor, device.sensors)):
                 if word and word not in known:
                     return SwitchResult(success=False, message=f"{name} has no {word}: it has {', '.join(known)}")
-            port.air = fault.air
+            port.air, port.power = fault.air, fault.power
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
             port.drive()

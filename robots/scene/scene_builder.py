@@ -11,7 +11,7 @@ from engine.document import CellDocument, DeviceAxis, Fixture, HingeAxis, Person
 from engine.errors import CellError
 from robots.model.registry import model_location
 from robots.scene.joined_bodies import drawn_bonds, part_poses
-from robots.scene.sim_scene import ArmPlacement, AxisBody, FixtureBody, PartBody, PersonBody, Rgba, SimScene
+from robots.scene.sim_scene import ArmPlacement, AxisBody, BeltBody, FixtureBody, PartBody, PersonBody, Rgba, SimScene
 
 Resolve = Callable[[str], Path]
 
@@ -62,6 +62,9 @@ def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
         bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
         for name in axis.against:
             bodies[name] = msgspec.structs.replace(bodies[name], jaw_friction=axis.friction)
+    for belt in (belt for device in document.devices.values() for belt in device.belts.values()):
+        surface = BeltBody(along=belt.along, speed_m_s=belt.speed_m_s, acceleration_m_s2=belt.acceleration_m_s2)
+        bodies[belt.body] = msgspec.structs.replace(bodies[belt.body], belt=surface, jaw_friction=belt.friction)
     return tuple(bodies.values())
 
 

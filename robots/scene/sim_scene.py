@@ -74,13 +74,21 @@ class AxisBody(msgspec.Struct, frozen=True, kw_only=True):
     """The kinds of bonds that its body cuts."""
 
 
+class BeltBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The running surface of a fixture: its direction in the frame of the fixture, its speed and how that changes."""
+
+    along: Vector3
+    speed_m_s: float
+    acceleration_m_s2: float
+
+
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
     With `spring_n_m` above 0 it rests on a spring and a damper and yields along its z axis, like foam
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
-    `skin_friction` with any other body. With an `axis` it is moved by a device. `jaw_friction` is that of
-    the surface of what a device presses with, or against.
+    `skin_friction` with any other body. With an `axis` it is moved by a device, with a `belt` its
+    surface is. `jaw_friction` is that of the surface of what a device presses with, or against, or carries with.
     """
 
     name: str
@@ -93,6 +101,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     sprung_kg: float = 0.1
     skin_friction: float = 0.3
     axis: AxisBody | None = None
+    belt: BeltBody | None = None
     jaw_friction: float | None = None
     rgba: Rgba = GREY
 

@@ -32,6 +32,7 @@ from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.belts import Belts
 from robots.sim.loop.bonds import Bonds
 from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
@@ -93,7 +94,7 @@ class Simulation:
             for arm in cell.arms
         }
         self._hands = ExternalPushes(physics)
-        self._axes = DeviceAxes(cell, physics)
+        self._axes, self._belts = DeviceAxes(cell, physics), Belts(cell, physics)
         self._held_parts = HeldParts(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
@@ -197,6 +198,7 @@ class Simulation:
         match command:
             case DriveAxis():
                 self._axes.drive(command)
+                self._belts.drive(command)
             case MirrorArm():
                 self._arms[command.arm].mirror(command.position_rad, command.velocity_rad_s)
             case MirrorTool():
@@ -212,6 +214,7 @@ class Simulation:
             arm.place()
         self._held_parts.place()
         self._modules.pin()
+        self._belts.run(self.step_s)
         self._physics.start_step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
@@ -267,6 +270,7 @@ class Simulation:
         self._physics.rest_at(image[layout.physics])
         self._bonds.take_over(image[layout.bonds], away=self._modules.away)
         self._held_parts.restart()
+        self._belts.stand()
         for name, arm in self._arms.items():
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
         for name, tool in self._tools.items():

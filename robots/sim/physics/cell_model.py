@@ -15,7 +15,7 @@ from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.bond_constraint import add_bonds
-from robots.sim.physics.device_axis import add_axis, add_jaw
+from robots.sim.physics.device_axis import add_axis, add_belt, add_jaw
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.plant_errors import PlantErrors
@@ -146,6 +146,8 @@ def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
             add_jaw(geom, friction=fixture.jaw_friction)
         if fixture.axis is not None:
             add_axis(spec, body, geom, fixture.name, fixture.axis)
+        if fixture.belt is not None:
+            add_belt(body, geom, fixture.name, fixture.belt)
         return
     for centre, size in tray_boxes(fixture):
         body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])

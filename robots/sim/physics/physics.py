@@ -89,6 +89,12 @@ class Physics:
         """Return the number of a motor in `motors`."""
         return int(self._model.actuator(name).id)
 
+    def run_joint(self, joint: str, velocity: float) -> None:
+        """Let a joint with one axis have a velocity, in m/s or rad/s, in the next step, and be at 0 before it."""
+        found = self._model.joint(joint)
+        self.positions[found.qposadr[0]] = 0.0
+        self.velocities[found.dofadr[0]] = velocity
+
     def set_dry_friction(self, joint: str, force: float) -> None:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
         self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force

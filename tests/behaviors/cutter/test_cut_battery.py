@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from engine.document.cell import load_cell
 from engine.document.faults import load_faults
-from tests.behaviors.application import BEHAVIORS, Application, causes, changed_cell, shipped_cell
+from tests.behaviors.application import BEHAVIORS, Application, causes, shipped_cell
 from tests.tiers import nightly
 
 BEHAVIOR = "cutter/cut_battery.yaml"
@@ -27,9 +28,15 @@ def test_the_cutter_cuts_the_battery_off_and_the_arm_takes_it_away_alone(tmp_pat
 
 
 def test_solder_that_is_too_hard_is_found_by_the_board_that_comes_along(tmp_path: Path) -> None:
-    """The blades press with 120 N; no sensor of the cutter can tell."""
-    cell = changed_cell("cutter", tmp_path, cell=lambda text: text.replace("cut_n: 60, jitter: 0.2", "cut_n: 130"))
-    done = Application(behavior=BEHAVIOR, cell=cell, seed=1)
+    """The blades press with 120 N, and with 137 N as they arrive; no sensor of the cutter can tell."""
+    text = (BEHAVIORS / "cells" / "cutter.yaml").read_text(encoding="utf-8")
+    assert "cut_n: 60, jitter: 0.2" in text
+    file = tmp_path / "cutter.yaml"
+    file.write_text(
+        text.replace("cut_n: 60, jitter: 0.2", "cut_n: 150").replace("../modules", str(BEHAVIORS / "modules")),
+        encoding="utf-8",
+    )
+    done = Application(behavior=BEHAVIOR, cell=load_cell(file), seed=1)
     assert done.run(tmp_path).outcome == "still_joined"
     assert {"root/cut reached", "root/take picked", "root/look elsewhere"} <= set(done.left)
 

@@ -68,7 +68,7 @@ def test_what_a_device_names_has_its_name_in_the_cell(tmp_path: Path) -> None:
         ("output: close", "output: clse", "no step sets the output `clse`", 9),
         ("{axis: main, at_least", "{axis: mein, at_least", "there is no axis `mein`", 11),
         ("at_least: 0.02", "at_least: 0.05", "sensor `shut` is never on", 11),
-        ("{air: true}", "{}", "sensor `air` has either an `axis` or `air: true`", 12),
+        ("{air: true}", "{}", "sensor `air` has either an `axis`, a `beam` or `air: true`", 12),
         ("wait_for: {shut", "wait_for: {shot", "there is no sensor `shot`", 15),
         ("sensors: {shut: true}", "sensors: {shot: true}", "there is no sensor `shot`", 15),
         ("[{set: {close: false}}]", "[{set: {close: false}, pause: 1}]", "a step has one of", 14),
