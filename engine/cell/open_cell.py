@@ -71,6 +71,7 @@ class OpenCell:
         """The tools with a driver of their own, by bus namespace; all others are served by their arms."""
         self.equipment: Mapping[str, Robot] = {}
         """The equipment by name, simulated or with a driver."""
+        self._equipped_devices: tuple[Robot, ...] = ()
         self._world: World | None = None
         self._real_arms = TopicMeasures(())
         self._store_path = store_path
@@ -152,7 +153,7 @@ class OpenCell:
     @property
     def devices(self) -> tuple[Robot, ...]:
         """Everything that a stop brings to rest: robots, tools with a driver of their own, equipment, the world."""
-        devices = (*self.robots.values(), *self.tools.values(), *self.equipment.values())
+        devices = (*self.robots.values(), *self.tools.values(), *self.equipment.values(), *self._equipped_devices)
         return (*devices, *((self._world,) if self._world is not None else ()))
 
     async def stop(self, *, ended: DeviceStopped | None = None) -> None:
@@ -217,6 +218,7 @@ class OpenCell:
         world = await self._open_world(self.document)
         driven = {each.written_name: each for each in assigned_drivers(self.document)}
         await self._open_equipment(self.document, driven)
+        await self._open_equipped_devices(self.document)
         await self._open_robots(self.document, world, driven)
         self._stack.push_async_callback(self._close_bus)
 
@@ -270,6 +272,14 @@ class OpenCell:
             await self._open_device(opened[name])
             # At once: what was opened before an error is brought to rest too.
             self.equipment = dict(opened)
+
+    async def _open_equipped_devices(self, cell: Cell) -> None:
+        """Open what moves by pins of equipment; a world serves the other devices."""
+        if any(device.equipment is not None for device in cell.document.devices.values()):
+            new_devices: Callable[..., Robot] = load_factory(WORLDS, "devices")
+            devices = new_devices(cell, bus=self.bus)
+            await self._open_device(devices)
+            self._equipped_devices = (devices,)
 
     async def _open_robots(self, cell: Cell, world: World | None, driven: Mapping[str, AssignedDriver]) -> None:
         simulated = {robot.name: robot for robot in world.robots()} if world is not None else {}

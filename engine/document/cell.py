@@ -27,13 +27,20 @@ from engine.document.cell_modules import (
     require_plugged,
     with_positions,
 )
-from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
+from engine.document.cell_perception import (
+    DepthCamera,
+    OccupancyMap,
+    Person,
+    SpeedAndSeparationMonitoring,
+    require_detection_frames,
+)
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
+from engine.document.device_pins import require_device_pins
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
-from engine.document.placement import Name, Placement
+from engine.document.placement import Name
 from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -146,7 +153,8 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
         parts, cameras, devices, bonds = dict(self.parts), dict(self.cameras), dict(self.devices), dict(self.bonds)
         for name, module in modules.items():
-            added = docked(name, module.document, connector=self.modules[name].connector or WORLD)
+            spec = self.modules[name]
+            added = docked(name, module.document, connector=spec.connector or WORLD, equipment=spec.equipment)
             frames |= added.frames
             fixtures |= added.fixtures
             parts |= added.parts
@@ -253,12 +261,15 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_people(document, source)
     _require_unknown_bodies(document, source)
     _require_regions(document, source)
-    _require_detection_frames(document, source)
+    require_detection_frames(document.cameras, document.frames, source)
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
     carried = _items_on_modules(written, document, source, modules) if modules else {}
     pins = load_pins(document.equipment, source, folder=file.parent, taken=_namespaces(document))
+    require_device_pins(
+        document.devices, source, document.modules, document.equipment, pins, has_world=document.world is not None
+    )
     return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried, pins=pins)
 
 
@@ -378,17 +389,6 @@ def _require_regions(document: CellDocument, source: DocumentSource) -> None:
             where=source.position(("speed_and_separation_monitoring",), of_key=True),
             hint="add `cameras:` and `occupancy:`",
         )
-
-
-def _require_detection_frames(document: CellDocument, source: DocumentSource) -> None:
-    for name, camera in document.cameras.items():
-        detect = camera.detect
-        if detect is not None and detect.frame in document.frames and detect.frame_at != Placement():
-            raise DocumentError(
-                f"camera `{name}` detects in the frame `{detect.frame}` of the cell, whose pose is known",
-                where=source.position(("cameras", name, "detect", "frame_at"), of_key=True),
-                hint="remove `frame_at`, or choose another frame name",
-            )
 
 
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))

@@ -143,9 +143,14 @@ class DeviceInterlock(StrictModel, frozen=True, kw_only=True):
 
 
 class DeviceSpec(StrictModel, frozen=True, kw_only=True):
-    """A device: its axes, belts, sensors, positions and interlocks. One that moves nothing switches outputs: a lamp."""
+    """A device: its axes, belts, sensors, positions and interlocks. One that moves nothing switches outputs: a lamp.
+
+    With `equipment`, its outputs and sensors are the pins of that equipment with the same names. A module does not name
+    equipment: the cell does that for all devices of the module.
+    """
 
     description: str = ""
+    equipment: Annotated[Name | None, Meta(description="Equipment of the cell on whose pins it is")] = None
     axes: dict[Name, DeviceAxis] = {}
     belts: dict[Name, DeviceBelt] = {}
     sensors: dict[Name, DeviceSensor] = {}
@@ -164,8 +169,8 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
         return next((name for name, sensor in self.sensors.items() if sensor.air), "")
 
 
-def placed_device(device: DeviceSpec, named: Callable[[str], str]) -> DeviceSpec:
-    """Return a device whose fixtures and other devices have their names in the cell."""
+def placed_device(device: DeviceSpec, named: Callable[[str], str], *, equipment: str | None) -> DeviceSpec:
+    """Return a device of a module whose fixtures and other devices have their names in the cell."""
     axes = {
         name: replace(axis, body=named(axis.body), against=tuple(named(one) for one in axis.against))
         for name, axis in device.axes.items()
@@ -176,7 +181,7 @@ def placed_device(device: DeviceSpec, named: Callable[[str], str]) -> DeviceSpec
         for name, one in device.sensors.items()
     }
     interlocks = tuple(replace(one, device=named(one.device)) for one in device.interlocks)
-    return replace(device, axes=axes, belts=belts, sensors=sensors, interlocks=interlocks)
+    return replace(device, axes=axes, belts=belts, sensors=sensors, interlocks=interlocks, equipment=equipment)
 
 
 def require_devices(

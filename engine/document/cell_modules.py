@@ -36,6 +36,7 @@ class ModuleSpec(StrictModel, frozen=True, kw_only=True):
         Name | None, Meta(description="The connector that it is docked to, or is plugged to if none is named then")
     ] = None
     plugged: Annotated[bool, Meta(description="Whether it is docked when the cell is opened")] = True
+    equipment: Annotated[Name | None, Meta(description="Equipment of the cell on whose pins its devices are")] = None
 
 
 class DockedModule(StrictModel, frozen=True, kw_only=True):
@@ -93,7 +94,7 @@ def load_modules(
     return loaded
 
 
-def docked(name: str, document: ModuleDocument, *, connector: str) -> DockedModule:
+def docked(name: str, document: ModuleDocument, *, connector: str, equipment: str | None = None) -> DockedModule:
     """Return what stands in the cell with a module of this name."""
     own = {*document.frames, *document.fixtures}
 
@@ -125,7 +126,7 @@ def docked(name: str, document: ModuleDocument, *, connector: str) -> DockedModu
             for key, one in document.parts.items()
         },
         cameras={named(key): camera(one) for key, one in document.cameras.items()},
-        devices={named(key): placed_device(one, named) for key, one in document.devices.items()},
+        devices={named(key): placed_device(one, named, equipment=equipment) for key, one in document.devices.items()},
         bonds={named(key): replace(one, part=named(one.part), to=named(one.to)) for key, one in document.bonds.items()},
     )
 

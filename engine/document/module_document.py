@@ -16,6 +16,7 @@ from engine.document.cell_bonds import BondSpec, require_bonds
 from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, require_frames
 from engine.document.cell_perception import DepthCamera
+from engine.document.device_pins import refuse_equipment
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -74,6 +75,7 @@ def module_of_source(source: DocumentSource, *, file: Path) -> Module:
     document = decode_document(source, ModuleDocument)
     require_sizes(document.fixtures, document.parts, source)
     require_devices(document.devices, source, fixtures=document.fixtures)
+    refuse_equipment(document.devices, source)
     require_bonds(document.bonds, source, parts=document.parts, fixtures=document.fixtures)
     require_frames(
         document.frames,

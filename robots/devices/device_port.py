@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
+from engine.bus import Holder
+
 
 class DevicePort(Protocol):
     """Sets outputs and reads sensors of one device."""
 
-    async def set_output(self, name: str, *, on: bool) -> None:
-        """Turn an output on or off, and return when that is confirmed; raises RobotError."""
+    async def set_output(self, name: str, *, on: bool, holder: Holder) -> None:
+        """Turn an output on or off for `holder`, and return when that is confirmed; raises RobotError."""
         ...
 
     @property

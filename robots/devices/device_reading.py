@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from engine.document import DeviceSensor, DeviceSpec
-from engine.skills.device_moves import BETWEEN, UNKNOWN
+from engine.skills.device_moves import BETWEEN, UNKNOWN, DeviceReading
 
 
 def sensed_position(device: DeviceSpec, sensors: Mapping[str, bool]) -> str:
@@ -23,6 +23,15 @@ def contradiction(device: DeviceSpec, sensors: Mapping[str, bool]) -> str:
             if sensor.axis == other.axis and _apart(sensor, other):
                 return f"the sensors {name} and {other_name} of the axis {sensor.axis} are both on"
     return ""
+
+
+def is_at(device: DeviceSpec, reading: DeviceReading, position: str) -> bool:
+    """Return whether it is at a position: sensed where sensors tell it, else commanded and its time has passed."""
+    if reading.moving or reading.problem:
+        return False
+    if device.positions[position].sensors:
+        return reading.sensed == position
+    return reading.commanded == position and reading.timed
 
 
 def has_air(device: DeviceSpec, sensors: Mapping[str, bool]) -> bool:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from functools import partial
 
+from engine.bus import Holder
 from engine.clock import Clock
 from engine.document import DevicePosition, DeviceSpec, seconds
 from engine.skills.device_moves import DeviceEnd, DeviceResult
@@ -45,8 +46,10 @@ class DeviceSequence:
         self._clock = clock
         self._is_at = is_at
 
-    async def execute(self, name: str, *, at_step: Callable[[int, int], None]) -> DeviceResult:
+    async def execute(self, name: str, *, holder: Holder, at_step: Callable[[int, int], None]) -> DeviceResult:
         """Move to a position and say how that ended; `at_step` is called with each step and at each reading.
+
+        `holder` is who commands it.
 
         Raises:
             RobotError: an output cannot be set, or a sensor cannot be read.
@@ -61,7 +64,7 @@ class DeviceSequence:
                 report = partial(at_step, index + 1, len(position.steps))
                 report()
                 for output, on in (step.set or {}).items():
-                    await self._port.set_output(output, on=on)
+                    await self._port.set_output(output, on=on, holder=holder)
                 if step.pause is not None:
                     await self._pass(seconds(step.pause), report)
                 if step.wait_for is not None:

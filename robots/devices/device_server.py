@@ -14,7 +14,7 @@ from engine.errors import GoalRejected, RobotError, SkillFailed
 from engine.skills.device_moves import DeviceFeedback, DeviceReading, DeviceResult, MoveDevice, ReadDevice
 from engine.wording import did_you_mean
 from robots.devices.device_port import DevicePort
-from robots.devices.device_reading import contradiction, has_air, sensed_position
+from robots.devices.device_reading import contradiction, has_air, is_at, sensed_position
 from robots.devices.device_sequence import DeviceSequence
 
 
@@ -45,7 +45,7 @@ class DeviceServer:
         *,
         clock: Clock,
         is_at: Callable[[str, str], bool],
-        moved: Callable[[], None],
+        moved: Callable[[], None] = lambda: None,
     ) -> None:
         self.name = name
         self.memo = DeviceMemo()
@@ -81,15 +81,6 @@ class DeviceServer:
             problem=problem,
         )
 
-    def is_at(self, position: str) -> bool:
-        """Return whether it is at a position: sensed where sensors tell it, else commanded and its time has passed."""
-        state = self.state()
-        if state.moving or state.problem:
-            return False
-        if self._device.positions[position].sensors:
-            return state.sensed == position
-        return state.commanded == position and state.timed
-
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills and publish the state."""
         bus.advertise_action(MoveDevice, self._move, namespace=self.name, exclusive=self.name)
@@ -120,7 +111,8 @@ class DeviceServer:
             self.publish()
 
         self.memo = DeviceMemo(commanded=goal.position)
-        task = asyncio.create_task(self._sequence.execute(goal.position, at_step=at_step), name=f"move {self.name}")
+        sequence = self._sequence.execute(goal.position, holder=handle.holder, at_step=at_step)
+        task = asyncio.create_task(sequence, name=f"move {self.name}")
         self._moving = task
         handle.on_cancel(lambda: _cancel(task))
         try:
@@ -148,3 +140,9 @@ class DeviceServer:
 
 def _cancel(task: asyncio.Task[DeviceResult]) -> None:
     task.cancel()
+
+
+def known_at(bus: SkillBus, name: str, device: DeviceSpec, position: str) -> bool:
+    """Return whether a device is at a position, by what it says on the bus."""
+    reading = bus.topic(f"{name}/state", DeviceReading).latest
+    return reading is not None and is_at(device, reading, position)

@@ -9,16 +9,17 @@ from typing import Self
 import msgspec
 import numpy as np
 
-from engine.bus import SkillBus
+from engine.bus import Holder, SkillBus
 from engine.clock import Clock
 from engine.document import Cell, DeviceAxis, DeviceSensor, DeviceSpec, LightBarrier, SlideAxis
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
-from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, DeviceReading, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
-from robots.devices.device_server import DeviceMemo, DeviceServer
+from robots.devices.device_server import DeviceMemo, DeviceServer, known_at
 from robots.devices.light_barrier import is_interrupted
+from robots.devices.pins_of_simulation import SimulatedWiring
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
 from robots.scene.sim_scene import SimScene
@@ -52,9 +53,14 @@ class SimulatedDevice:
         self.stuck: set[str] = set()
         self.wrong: dict[str, bool] = {}
 
-    async def set_output(self, name: str, *, on: bool) -> None:
+    async def set_output(self, name: str, *, on: bool, holder: Holder) -> None:
         """Turn an output on or off from the next step on."""
-        self.outputs[name] = on
+        del holder
+        self.take_outputs({name: on})
+
+    def take_outputs(self, values: Mapping[str, bool]) -> None:
+        """Have outputs from the next step on; names of others are left out."""
+        self.outputs |= {name: on for name, on in values.items() if name in self.outputs}
         self.drive()
 
     @property
@@ -118,6 +124,8 @@ class SimulatedDevice:
 class SimulatedDevices:
     """All devices of one simulated world; entered, registered and left with it.
 
+    Those on equipment are served by `EquippedDevices`, and moved by what the outputs of the equipment are.
+
     Args:
         cell: The cell.
         world: The world.
@@ -128,6 +136,7 @@ class SimulatedDevices:
 
     def __init__(self, cell: Cell, world: SimWorld, *, clock: Clock) -> None:
         self._world = world
+        self._cell = cell.document
         self._devices = cell.document.devices
         self._ports = {name: SimulatedDevice(device, world) for name, device in self._devices.items()}
         self._servers = {
@@ -135,16 +144,36 @@ class SimulatedDevices:
                 name, device, self._ports[name], clock=clock, is_at=self._is_at, moved=self._publish_poses
             )
             for name, device in self._devices.items()
+            if device.equipment is None
         }
+        self._wirings = tuple(
+            SimulatedWiring(
+                equipment,
+                tuple(self._ports[name] for name, device in self._devices.items() if device.equipment == equipment),
+                simulated=cell.document.equipment[equipment].simulated,
+                clock=clock,
+            )
+            for equipment in dict.fromkeys(device.equipment for device in self._devices.values())
+            if equipment is not None
+        )
+        self._bus: SkillBus | None = None
         self._published: dict[str, Pose] = {}
         self.status = DeviceStatus.DISCONNECTED
         world.modules.watch(self._modules_changed)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills of each device, and the service that breaks it."""
-        for name, server in self._servers.items():
+        self._bus = bus
+        for server in self._servers.values():
             server.register(bus)
-            bus.advertise_service(SimulateDeviceFault, self._fault_service(name), namespace=name)
+        for name, device in self._devices.items():
+            if device.equipment is None or self._cell.equipment[device.equipment].simulated:
+                bus.advertise_service(SimulateDeviceFault, self._fault_service(name), namespace=name)
+            if device.equipment is not None:
+                # While it is moved it publishes its state, and at rest its last one.
+                bus.topic(f"{name}/state", DeviceReading).subscribe(lambda _state: self._publish_poses())
+        for wiring in self._wirings:
+            wiring.start(bus)
 
     def grips(self) -> dict[str, GraspCommand]:
         """Return no grasp commands."""
@@ -163,7 +192,7 @@ class SimulatedDevices:
                 power=port.power,
                 stuck=tuple(sorted(port.stuck)),
                 wrong=port.wrong,
-                server=self._servers[name].memo,
+                server=self._servers[name].memo if name in self._servers else DeviceMemo(),
             )
             for name, port in self._ports.items()
         }
@@ -181,7 +210,10 @@ class SimulatedDevices:
             port = self._ports[name]
             port.outputs, port.pressed, port.wrong = dict(known.outputs), dict(known.pressed), dict(known.wrong)
             port.air, port.power, port.stuck = known.air, known.power, set(known.stuck)
-            self._servers[name].memo = known.server
+            if name in self._servers:
+                self._servers[name].memo = known.server
+        for wiring in self._wirings:
+            wiring.keep()
         self._drive()
         self._publish_poses()
 
@@ -207,6 +239,8 @@ class SimulatedDevices:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         await self.stop()
+        for wiring in self._wirings:
+            await wiring.close()
         self.status = DeviceStatus.DISCONNECTED
 
     def _drive(self) -> None:
@@ -214,7 +248,7 @@ class SimulatedDevices:
             port.drive()
 
     def _is_at(self, device: str, position: str) -> bool:
-        return self._servers[device].is_at(position)
+        return self._bus is not None and known_at(self._bus, device, self._devices[device], position)
 
     def _modules_changed(self, _scene: SimScene) -> None:
         """Take note that moved fixtures are published where the cell document places them."""
@@ -245,7 +279,8 @@ class SimulatedDevices:
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
             port.drive()
-            self._servers[name].publish()
+            if name in self._servers:
+                self._servers[name].publish()
             words = "without a fault" if fault == DeviceFault() else "broken"
             return SwitchResult(success=True, message=f"{name} is {words}")
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable
 
 from msgspec.structs import replace
 
 from engine.messages.device_state import DeviceMode, DeviceState
-
-_log = logging.getLogger("flexcell.devices")
 
 
 class DeviceHistory:
@@ -27,7 +24,7 @@ class DeviceHistory:
 
     def enabled(self, *, by: str, reason: str) -> None:
         """Note that a person has enabled it."""
-        self._by, self._reason = _one_line(by), _one_line(reason)
+        self._by, self._reason = one_line(by), one_line(reason)
 
     def complete(self, state: DeviceState) -> DeviceState:
         """Return a state with its mode and what is kept."""
@@ -58,11 +55,6 @@ class DeviceHistory:
         return "stopped" if self._was_enabled else "reading"
 
 
-def log_enabling(name: str, *, by: str, reason: str) -> None:
-    """Log that a person enables a device, before it may move."""
-    _log.warning("%s is enabled by %s: %s", name, _one_line(by) or "a person who gave no name", _one_line(reason))
-
-
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
     """Return a text of a person without line ends and control characters: it could look like other lines of the log."""
     return " ".join("".join(each if each.isprintable() else " " for each in text).split())

@@ -13,11 +13,11 @@ from typing import Generic, Protocol, Self, TypeVar
 
 from engine.bus import SkillBus
 from engine.cell.drivers import DeviceReport, RoundTrip
-from engine.errors import GoalRejected, RobotError
+from engine.errors import RobotError
 from engine.messages.device_state import DeviceLink, DeviceState
 from engine.robot import DeviceStatus
-from engine.skills.devices import EnableDevice
-from robots.drivers.device_history import DeviceHistory, log_enabling
+from robots.drivers.device_enabling import advertise_enabling, log_enabling
+from robots.drivers.device_history import DeviceHistory
 from robots.drivers.device_motion import DeviceMotion
 from robots.drivers.device_transport import DeviceTransport
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
@@ -129,7 +129,7 @@ class ToolDevice(ABC, Generic[R, C, P]):
         """Advertise the skills of the tool and `EnableDevice`, publish `<name>/state` and `<name>/device`."""
         self._bus = bus
         self._opened()[2].register(bus)
-        bus.advertise_service(EnableDevice, self._enable, namespace=self._name)
+        advertise_enabling(bus, self._name, self)
         bus.topic(f"{self._name}/link", DeviceLink).provide(self._link_now)
         self._publish_device()
 
@@ -347,13 +347,6 @@ class ToolDevice(ABC, Generic[R, C, P]):
             self._problem = problem
             self._publish_device()
         self.port.fail(cause or problem, at_rest=at_rest)
-
-    async def _enable(self, request: EnableDevice) -> DeviceState:
-        owner = self._bus.leases.owner(self._name) if self._bus is not None else None
-        if owner is not None:
-            raise GoalRejected(f"{self._name} is commanded by run {owner}", hint="end that run first")
-        await self.enable(request.reason, by=request.by)
-        return self.device_state()
 
     async def _until(self, condition: Callable[[R], bool], *, limit_s: float) -> None:
         """Wait for a reading that meets a condition."""

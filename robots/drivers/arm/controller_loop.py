@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from dataclasses import replace as replace_fields
 
 import numpy as np
 from msgspec.structs import replace
@@ -41,6 +42,9 @@ _STILL_MOVING_AFTER_S = 3.0
 _MOVED_RAD = 1e-4
 # A brake that is released lets an arm sag a little.
 _ENABLED_NEAR_RAD = 0.1
+_ENABLED_READINGS = 5
+# A set point may be this much farther than the joint can go until then: rounding, not a jump.
+_NEXT_SET_POINT_RAD, _NEXT_SET_POINT_SHARE = 2e-3, 1.1
 NOT_ENABLED = "motion is not enabled"
 _INVALID_HINT = "check the versions of controller and client library; only reading is restored by itself"
 ENABLE_HINT = "look at the arm, then permit motion: `flexcell run --enable REASON`, or the skill enable_device"
@@ -106,6 +110,8 @@ class ControllerLoop:
         self._tool = NO_TOOL
         self._unreported: list[AnyMotionEvent] = []
         self._interruption: _Interruption | None = None
+        self._fastest_rad_s = np.array(model.limits.velocity_rad_s)
+        self._sent_rad: Array | None = None
         self._reading: ControllerReading | None = None
         self._read_at_s = clock()
         self.readings = 0
@@ -179,7 +185,7 @@ class ControllerLoop:
             raise
         # A controller that holds a set point gets this one again: the measured joints are a jump away from it.
         start_rad = reading.position_rad if reading.held_rad is None else reading.held_rad
-        self.control.initialize(start_rad, reflex=self.control.reflex)
+        self._begin_at(start_rad)
         self.problem = self.hint = ""
 
     def step(self) -> list[AnyMotionEvent]:
@@ -206,15 +212,34 @@ class ControllerLoop:
         for _ in range(steps):
             events.extend(control.advance(step_s / steps))
         try:
-            self._controller.command(control.motion.position, control.motion.velocity)
+            self._command(step_s)
             if self._wants_tool and not control.motion.number:
                 held_rad = self._set_tool().held_rad
                 if held_rad is not None:
-                    control.initialize(held_rad, reflex=control.reflex)
+                    self._begin_at(held_rad)
         except MotionRefused as error:
             self._interrupt(str(error), error.hint)
             self._controller.stop()
         return events
+
+    def _begin_at(self, position_rad: Array) -> None:
+        self.control.initialize(position_rad, reflex=self.control.reflex)
+        self._sent_rad = None
+
+    def _command(self, step_s: float) -> None:
+        """Send the set point; raises MotionRefused where no motion leads there from the last one."""
+        motion, sent_rad = self.control.motion, self._sent_rad
+        if sent_rad is not None:
+            most_rad = _NEXT_SET_POINT_SHARE * self._fastest_rad_s * step_s + _NEXT_SET_POINT_RAD
+            off_rad = np.abs(motion.position - sent_rad)
+            joint = int((off_rad - most_rad).argmax())
+            if not off_rad[joint] <= most_rad[joint]:
+                raise MotionRefused(
+                    f"the next set point of {self._joints[joint]} is {off_rad[joint]:.3g} rad away from the last",
+                    hint="it was not sent; report it with the log, look at the arm, then enable motion",
+                )
+        self._controller.command(motion.position, motion.velocity)
+        self._sent_rad = motion.position.copy()
 
     def state(self) -> ArmProcessState:
         """Return the present state; something was measured."""
@@ -281,6 +306,16 @@ class ControllerLoop:
             if reading is not None:
                 return reading
 
+    def _settled_reading(self) -> ControllerReading:
+        """Return the newest of some readings with the median of their joints: one that is wrong counts nothing."""
+        readings = [self._await_reading() for _ in range(_ENABLED_READINGS)]
+        held = [each.held_rad for each in readings if each.held_rad is not None]
+        return replace_fields(
+            readings[-1],
+            position_rad=np.median([each.position_rad for each in readings], axis=0),
+            held_rad=np.median(held, axis=0) if len(held) == len(readings) else None,
+        )
+
     def read_first(self) -> None:
         """Wait for the first measurement and hold it as the set point; raises ControllerLost."""
         reading = self._await_reading()
@@ -301,7 +336,7 @@ class ControllerLoop:
             self._wants_tool = True
 
     def _set_tool(self) -> ControllerReading:
-        """Set tool and load at rest, and return the first reading after it; raises MotionRefused."""
+        """Set tool and load at rest, and return the median of the readings after it; raises MotionRefused."""
         self._wants_tool, self._tool = False, NO_TOOL
         settings, before_rad = self._settings, self.control.state.position.copy()
         self._controller.enable(
@@ -309,10 +344,10 @@ class ControllerLoop:
             load_kg=settings.load_kg,
             load_com_m=self._at_flange(settings.load_com_m),
         )
-        reading = self._await_reading()
+        reading = self._settled_reading()
         if reading.stopped_by:
             raise MotionRefused(reading.stopped_by, hint=reading.remedy)
-        # Motion begins where this reading says: a single one that cannot be would have the arm go there.
+        # Motion begins where it says: what cannot be would have the arm go there.
         off_rad = np.abs(reading.position_rad - before_rad)
         joint = int(off_rad.argmax())
         if not off_rad[joint] < _ENABLED_NEAR_RAD:

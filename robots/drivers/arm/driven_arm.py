@@ -11,16 +11,16 @@ from typing import Self
 from engine.bus import SkillBus, Topic
 from engine.cell.drivers import DeviceReport
 from engine.clock import Clock
-from engine.errors import GoalRejected, RobotError
+from engine.errors import RobotError
 from engine.messages import Pose
 from engine.messages.device_state import DeviceLink, DeviceState
 from engine.robot import DeviceStatus
-from engine.skills.devices import EnableDevice
 from robots.arm.arm_server import ArmServer
 from robots.drivers.arm.arm_connection import ArmConnection
 from robots.drivers.arm.arm_setup import ArmSetup
 from robots.drivers.arm.measured_topics import MeasuredTopics
-from robots.drivers.device_history import DeviceHistory, log_enabling
+from robots.drivers.device_enabling import advertise_enabling, log_enabling
+from robots.drivers.device_history import DeviceHistory
 from robots.drivers.link_meter import LinkMeter
 from robots.port import ArmPort, SwitchableOutputs, Tolerance
 
@@ -100,7 +100,7 @@ class DrivenArm:
         """Advertise the motion skills and `EnableDevice`; publish joints, forces and `<name>/device`."""
         self._bus = bus
         self._opened().register(bus)
-        bus.advertise_service(EnableDevice, self._enable, namespace=self._name)
+        advertise_enabling(bus, self._name, self)
         self._link = bus.topic(f"{self._name}/link", DeviceLink)
         self._link.provide(self._link_now)
         self._topics = MeasuredTopics(bus, self._name, self.port, self._setup.model)
@@ -192,13 +192,6 @@ class DrivenArm:
             _log.error("%s", lost_reason)
             self._changed()
         self._publish_device()
-
-    async def _enable(self, request: EnableDevice) -> DeviceState:
-        owner = self._bus.leases.owner(self._name) if self._bus is not None else None
-        if owner is not None:
-            raise GoalRejected(f"{self._name} is commanded by run {owner}", hint="end that run first")
-        await self.enable(request.reason, by=request.by)
-        return self.device_state()
 
     async def enable(self, reason: str, *, by: str = "") -> None:
         """Permit motion, with what a controller forgets set again.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from types import TracebackType
@@ -13,12 +12,12 @@ from msgspec.structs import replace
 
 from engine.bus import SkillBus
 from engine.cell.drivers import DeviceReport
-from engine.errors import GoalRejected, RobotError
+from engine.errors import RobotError
 from engine.messages.device_state import DeviceState
 from engine.messages.topic_value import TopicValue
 from engine.robot import DeviceStatus, Reconnectable, Robot
-from engine.skills.devices import EnableDevice
 from engine.skills.digital_inputs import DigitalInputs
+from robots.drivers.device_enabling import advertise_enabling, log_enabling
 from robots.drivers.device_history import DeviceHistory
 from robots.port import OutputOwner, SwitchableOutputs
 from robots.sim.grip.tool_summary import ToolSummary
@@ -28,7 +27,6 @@ from robots.switched.switched_options import SwitchedToolOptions
 
 _STATE_PERIOD_S = 0.05
 _NOT_ENABLED = "not enabled"
-_log = logging.getLogger("flexcell.devices")
 
 
 class SwitchedTool:
@@ -96,7 +94,7 @@ class SwitchedTool:
         """Advertise the skills of the tool and `EnableDevice`, publish `<name>/state` and `<name>/device`."""
         self._bus = bus
         self._server.register(bus)
-        bus.advertise_service(EnableDevice, self._enable, namespace=self._name)
+        advertise_enabling(bus, self._name, self)
         self._publishing = asyncio.get_running_loop().create_task(self._publish(bus), name=f"topics of {self._name}")
 
     async def stop(self) -> None:
@@ -144,7 +142,7 @@ class SwitchedTool:
         if sensor is not None and sensor.input is not None and sensor.input >= len(self._inputs()):
             hint = "`flexcell devices` lists the inputs that its driver reads"
             raise RobotError(f"{self._owner} has no input {sensor.input}", where=self._name, hint=hint)
-        _log.warning("%s is enabled by %s: %s", self._name, by or "a person who gave no name", reason)
+        log_enabling(self._name, by=by, reason=reason)
         self._problem = ""
         self._history.enabled(by=by, reason=reason)
         self._publish_device()
@@ -193,13 +191,6 @@ class SwitchedTool:
 
     def _blocked(self) -> str:
         return self._loss() or self._problem
-
-    async def _enable(self, request: EnableDevice) -> DeviceState:
-        owner = self._bus.leases.owner(self._name) if self._bus is not None else None
-        if owner is not None:
-            raise GoalRejected(f"{self._name} is commanded by run {owner}", hint="end that run first")
-        await self.enable(request.reason, by=request.by)
-        return self.device_state()
 
     async def _publish(self, bus: SkillBus) -> None:
         while True:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import msgspec
 import pytest
 
+from engine.bus import Holder
 from engine.clock import new_clock, run_virtual
 from engine.document.cell_devices import DeviceSpec
 from engine.skills.device_moves import DeviceResult
@@ -29,6 +30,8 @@ VICE = {
     },
     "interlocks": [{"position": "after", "device": "door", "at": "closed"}],
 }
+
+HOLDER = Holder(run="a run")
 
 
 def no_change(_time_s: float) -> dict[str, bool]:
@@ -52,7 +55,7 @@ class Pins:
     log: list[tuple[float, str, bool]] = field(default_factory=list[tuple[float, str, bool]])
     now: Callable[[], float] = lambda: 0.0
 
-    async def set_output(self, name: str, *, on: bool) -> None:
+    async def set_output(self, name: str, *, on: bool, holder: Holder) -> None:
         """Keep it with its time."""
         self.log.append((round(self.now(), 3), name, on))
 
@@ -79,7 +82,7 @@ def moved(
         pins.now = lambda: clock.now_s() - start_s
         device = msgspec.convert(VICE, DeviceSpec)
         sequence = DeviceSequence(device, pins, clock=clock, is_at=lambda _device, _position: door)
-        result = await sequence.execute(position, at_step=lambda _step, _steps: None)
+        result = await sequence.execute(position, holder=HOLDER, at_step=lambda _step, _steps: None)
         return result, pins.log, round(pins.now(), 2)
 
     return run_virtual(move())

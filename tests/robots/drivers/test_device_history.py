@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import logging
-
 import pytest
 
 from engine.messages.device_state import DeviceMode, DeviceState
-from robots.drivers.device_history import DeviceHistory, log_enabling
+from robots.drivers.device_history import DeviceHistory
 
 
 def state(problem: str = "", *, connected: bool = True, fault: str = "") -> DeviceState:
@@ -68,14 +66,7 @@ def test_a_device_that_waits_to_be_enabled_has_no_cause(history: DeviceHistory) 
     assert (kept.last_cause, kept.last_cause_unix_s) == ("", 0.0)
 
 
-def test_a_reason_with_line_ends_is_one_line_of_the_log(
-    history: DeviceHistory, caplog: pytest.LogCaptureFixture
-) -> None:
-    """Else whoever may enable a device could write any line."""
-    by, reason = "eve\r\nERROR arm", "looked\n2026-11-27 INFO all is well\u2028\x85\x1b[2Jok"
-    with caplog.at_level(logging.WARNING, logger="flexcell.devices"):
-        log_enabling("arm", by=by, reason=reason)
-    assert caplog.messages == ["arm is enabled by eve ERROR arm: looked 2026-11-27 INFO all is well [2Jok"]
-    history.enabled(by=by, reason=reason)
+def test_a_reason_with_line_ends_is_kept_as_one_line(history: DeviceHistory) -> None:
+    history.enabled(by="eve\r\nERROR arm", reason="looked\n2026-11-27 INFO all is well\u2028\x85\x1b[2Jok")
     kept = history.complete(state())
     assert (kept.enabled_by, kept.enabled_for) == ("eve ERROR arm", "looked 2026-11-27 INFO all is well [2Jok")

@@ -13,11 +13,11 @@ from msgspec.structs import replace
 from engine.bus import SkillBus
 from engine.cell.drivers import DeviceReport, RoundTrip
 from engine.document.equipment import EquipmentDocument
-from engine.errors import GoalRejected, RobotError
+from engine.errors import RobotError
 from engine.messages.device_state import DeviceState
 from engine.robot import DeviceStatus
-from engine.skills.devices import EnableDevice
-from robots.drivers.device_history import DeviceHistory, log_enabling
+from robots.drivers.device_enabling import advertise_enabling, log_enabling
+from robots.drivers.device_history import DeviceHistory
 from robots.drivers.equipment.device.equipment_signals import EquipmentSignals, PinSignals
 from robots.drivers.equipment.device.equipment_transport import EquipmentCommand, EquipmentReading, EquipmentTransport
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
@@ -91,7 +91,7 @@ class EquipmentDevice:
         """Publish pins and `<name>/device`; advertise `SetOutput` and `EnableDevice`."""
         self._bus = bus
         self._signals.register(bus)
-        bus.advertise_service(EnableDevice, self._enable, namespace=self._name)
+        advertise_enabling(bus, self._name, self)
         self._publish_device()
 
     async def stop(self) -> None:
@@ -312,13 +312,6 @@ class EquipmentDevice:
             _log.error("outputs of %s may not be set: %s", self._name, problem)
             self._problem = problem
             self._publish_device()
-
-    async def _enable(self, request: EnableDevice) -> DeviceState:
-        owner = self._bus.leases.owner(self._name) if self._bus is not None else None
-        if owner is not None:
-            raise GoalRejected(f"{self._name} is commanded by run {owner}", hint="end that run first")
-        await self.enable(request.reason, by=request.by)
-        return self.device_state()
 
     async def _until(self, condition: Callable[[FreshReading[EquipmentReading]], bool], *, limit_s: float) -> None:
         """Wait for a reading that meets a condition."""

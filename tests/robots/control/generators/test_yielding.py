@@ -35,12 +35,36 @@ def test_a_moving_set_point_continues_from_its_velocity_and_ends_at_the_measured
     assert velocities[-1] == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
-def test_the_goal_are_the_joints_measured_when_the_set_point_has_come_to_rest() -> None:
+def brought_to_rest(measured: Array) -> YieldGenerator:
+    """Return a generator whose set point has come to rest at this step."""
     generator = yielding()
     while generator.velocity.any() or not generator.position[0] > START[0]:
-        generator.step(STEP_S, np.array([0.0, 0.0]))
+        generator.step(STEP_S, measured)
+    return generator
+
+
+def test_the_goal_are_the_joints_measured_when_the_set_point_has_come_to_rest() -> None:
+    generator = brought_to_rest(np.array([0.3, 0.1]))
     generator.step(STEP_S, np.array([0.3, 0.1]))
     steps_until_complete(generator, np.array([0.9, 0.9]))
+    assert generator.position == pytest.approx([0.3, 0.1], abs=1e-9)
+
+
+@pytest.mark.parametrize("wrong", range(1, 25))
+def test_joints_that_are_measured_wrong_for_a_while_are_no_goal(wrong: int) -> None:
+    """One wrong measurement at the moment of rest had the arm go there at its full speed."""
+    generator = brought_to_rest(np.array([0.3, 0.1]))
+    for _ in range(wrong):
+        generator.step(STEP_S, np.array([-1.2, 0.1]))
+    steps_until_complete(generator, np.array([0.3, 0.1]))
+    assert generator.position == pytest.approx([0.3, 0.1], abs=1e-9)
+
+
+def test_a_set_point_that_stands_does_not_move_before_enough_was_measured() -> None:
+    generator = yielding(velocity=np.zeros(2))
+    generator.step(STEP_S, np.array([-1.2, 0.1]))
+    positions = np.array(steps_until_complete(generator, np.array([0.3, 0.1])))
+    assert positions[:, 0].min() >= START[0] - 1e-9
     assert generator.position == pytest.approx([0.3, 0.1], abs=1e-9)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 import pytest
@@ -113,6 +114,13 @@ async def test_nothing_is_switched_before_a_person_permits_it() -> None:
         assert (state.enabled, state.enabled_by, state.mode) == (True, "ann", "enabled")
         assert (await bus.send_goal(MagnetSwitch(on=True), to=MAGNET).result()).status is GoalStatus.SUCCEEDED
         assert device.lost_reason == ""
+
+
+async def test_who_permits_it_writes_one_line_of_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    async with switched("magnet", enable=False) as (bus, _, _):
+        with caplog.at_level(logging.WARNING, logger="flexcell.devices"):
+            await bus.call(EnableDevice(reason="looked\nERROR arm", by="eve\r"), to=MAGNET)
+    assert caplog.messages == [f"{MAGNET} is enabled by eve: looked ERROR arm"]
 
 
 async def test_a_lost_connection_of_the_outputs_takes_the_permission() -> None:

@@ -106,7 +106,8 @@ async def test_a_control_script_that_starts_late_is_waited_for_and_has_its_tool_
 async def test_a_script_that_hangs_after_it_was_uploaded_again_is_named_and_enabled_again_later() -> None:
     """The library waits for 4 s for each command, or for minutes where it believes that the script has taken one.
 
-    The script that ran before leaves behind that it is ready. The process is ended then, and another one reads.
+    It may believe so because the script that ran before has left behind that it is ready. The process is ended then, and
+    another one reads.
     """
     with EmulatedController() as controller:
         async with connected(controller, client="ur_rtde", start_s=5.0) as connection:
