@@ -10,7 +10,7 @@ BONDS_TOPIC = "cell/bonds"
 """The topic with the latest `CellBonds`."""
 
 
-class BondState(Message, frozen=True, kw_only=True, omit_defaults=True):
+class BondState(Message, frozen=True, kw_only=True):
     """One bond: the part and what it is joined to, or was.
 
     `broken_by` is empty while it joins them. `force_n`, and `torque_nm` about its place, are what it carries.
