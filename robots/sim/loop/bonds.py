@@ -63,12 +63,14 @@ class Bonds:
             for name, bond in cell.scene.bonds.items()
         ]
         self._numbers = np.array([bond.number for bond in self._bonds], dtype=np.intp)
+        self._has_blades = any(bond.blades for bond in self._bonds)
         self.image_size = len(self._bonds)
 
     def step(self) -> None:
         """Measure the loads of the last step, and part what has carried too much, or is cut."""
         if not self._bonds:
             return
+        touching = set(self._physics.contact_geoms().reshape(-1).tolist()) if self._has_blades else set[int]()
         for bond, load in zip(self._bonds, self._physics.bond_loads(self._numbers), strict=True):
             if not bond.holds:
                 continue
@@ -78,7 +80,7 @@ class Bonds:
                 False,
                 spec.force_n is not None and force_n > spec.force_n,
                 spec.torque_nm is not None and torque_nm > spec.torque_nm,
-                spec.cut_n is not None and self._blade_force_n(bond) > spec.cut_n,
+                spec.cut_n is not None and self._blade_force_n(bond, touching) > spec.cut_n,
             )
             bond.steps = [count + 1 if beyond else 0 for count, beyond in zip(bond.steps, exceeded, strict=True)]
             longest = max(bond.steps)
@@ -124,12 +126,13 @@ class Bonds:
         bond.broken, bond.steps, bond.load = broken, [0] * len(BROKEN_BY), (0.0, 0.0)
         self._physics.set_bond(bond.number, joined=bond.holds)
 
-    def _blade_force_n(self, bond: _Bond) -> float:
+    def _blade_force_n(self, bond: _Bond, touching: Collection[int]) -> float:
         """Return the force of a blade at the place of a bond on the two bodies that it joins, the greatest of all."""
-        if not bond.blades:
+        blades = [geom for geom in bond.blades if geom in touching]
+        if not blades:
             return 0.0
         place = self._physics.point_of(bond.part, np.array(bond.spec.at_m))
-        near = [geom for geom in bond.blades if self._physics.gap_m(geom, place) <= _AT_PLACE_M]
+        near = [geom for geom in blades if self._physics.gap_m(geom, place) <= _AT_PLACE_M]
         return max((self._pressing_n(geom, bond) for geom in near), default=0.0)
 
     def _pressing_n(self, blade: int, bond: _Bond) -> float:

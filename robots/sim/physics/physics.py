@@ -60,6 +60,8 @@ class Physics:
         self.geom_rotations: Array = self._data.geom_xmat
         self.geom_radii: Array = model.geom_rbound.copy()
         self._probe: Any = None
+        # The rows of the constraints of bonds; they change where a bond begins or ends to act.
+        self._bond_rows: list[tuple[int, int]] | None = None
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -106,18 +108,20 @@ class Physics:
     def set_bond(self, bond: int, *, joined: bool) -> None:
         """Let the constraint of a bond act, or not, from the next step on; it is part of the state."""
         self._data.eq_active[bond] = joined
+        self._bond_rows = None
 
     def bond_loads(self, bonds: NDArray[np.intp]) -> list[tuple[float, float]]:
         """Return the force in N and the torque in N m, about its place, that each bond carried in the last step."""
         data = self._data
-        numbers = data.efc_id[: data.ne]
-        loads: list[float] = data.efc_force[: data.ne].tolist()
-        first: list[int] = np.searchsorted(numbers, bonds).tolist()
-        last: list[int] = np.searchsorted(numbers, bonds, side="right").tolist()
+        count = int(data.ne)
+        if self._bond_rows is None:
+            numbers = data.efc_id[:count]
+            first = np.searchsorted(numbers, bonds).tolist()
+            self._bond_rows = list(zip(first, np.searchsorted(numbers, bonds, side="right").tolist(), strict=True))
+        loads: list[float] = data.efc_force[:count].tolist()
         # The rows of a weld's rotation are those of a quaternion, of half the angle.
         return [
-            (math.hypot(*loads[a : min(a + 3, b)]), 0.5 * math.hypot(*loads[a + 3 : b]))
-            for a, b in zip(first, last, strict=True)
+            (math.hypot(*loads[a : min(a + 3, b)]), 0.5 * math.hypot(*loads[a + 3 : b])) for a, b in self._bond_rows
         ]
 
     def gap_m(self, geom: int, point: Array) -> float:
