@@ -36,10 +36,14 @@ class FlexcellError(Exception):
         self.nodes: tuple[str, ...] = ()
         """The nodes of the behavior that the error passed through, `path at file:line:column`, innermost first."""
 
+    @property
+    def statement(self) -> str:
+        """Where and what, for an error that passes the hint on as its own."""
+        return f"{self.where}: {self.message}" if self.where is not None else self.message
+
     def __str__(self) -> str:
-        place = f"{self.where}: " if self.where is not None else ""
         advice = f" ({self.hint})" if self.hint else ""
-        return f"{place}{self.message}{advice}"
+        return f"{self.statement}{advice}"
 
 
 class DocumentError(FlexcellError):

@@ -186,7 +186,8 @@ class ToolDevice(ABC, Generic[R, C, P]):
             self._open = None
             if not isinstance(error, RobotError):
                 raise
-            raise RobotError(f"{self._words} does not answer: {error}", where=self._name, hint=error.hint) from error
+            what = f"{self._words} does not answer: {error.statement}"
+            raise RobotError(what, where=self._name, hint=error.hint) from error
         return self
 
     async def __aexit__(

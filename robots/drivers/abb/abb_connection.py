@@ -174,7 +174,8 @@ class AbbConnection:
             await link.close()
             if not isinstance(error, RobotError):
                 raise
-            raise RobotError(f"the controller does not answer: {error}", where=self._name, hint=error.hint) from error
+            what = f"the controller does not answer: {error.statement}"
+            raise RobotError(what, where=self._name, hint=error.hint) from error
         motion = MotionLink(
             options.host,
             options.motion_port,

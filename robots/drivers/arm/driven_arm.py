@@ -137,7 +137,8 @@ class DrivenArm:
         try:
             await connection.open()
         except RobotError as error:
-            raise RobotError(f"the arm does not answer: {error}", where=self._name, hint=error.hint) from error
+            what = f"the arm does not answer: {error.statement}"
+            raise RobotError(what, where=self._name, hint=error.hint) from error
         try:
             outputs = connection.outputs
             self._server = ArmServer(

@@ -197,7 +197,7 @@ class EquipmentServer:
                 await self._serve_pins(equipment, text)
             except RobotError as error:
                 await self._return_to(self._text)
-                raise RobotError(f"the new configuration was taken back: {error}", hint=error.hint) from error
+                raise RobotError(f"the new configuration was taken back: {error.statement}", hint=error.hint) from error
             return Done(message=f"{self.equipment} is served by the new configuration")
 
     async def _return_to(self, text: str) -> None:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import math
+import socket
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,8 +52,8 @@ class EgmFaults:
     repeats: bool = False
 
 
-class EgmSource(asyncio.DatagramProtocol):
-    """One client at a time: the one that the controller is configured for.
+class EgmSource:
+    """One client at a time: the one that the controller is configured for. Each cycle takes all that has come.
 
     Args:
         controller: Its axes are guided.
@@ -82,7 +84,7 @@ class EgmSource(asyncio.DatagramProtocol):
         self._clock = clock
         self._stop_s = stop_s
         self._comm_timeout_s = comm_timeout_s
-        self._transport: asyncio.DatagramTransport | None = None
+        self._socket: socket.socket | None = None
         self._ticking: asyncio.Task[None] | None = None
         self._number = 0
         self._time_ms = 0
@@ -116,22 +118,28 @@ class EgmSource(asyncio.DatagramProtocol):
         """Begin to send, where there is a client."""
         if self._client is None:
             return
-        loop = asyncio.get_running_loop()
-        await loop.create_datagram_endpoint(lambda: self, local_addr=(host, 0))
-        self._ticking = loop.create_task(self._tick_forever())
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        self._socket.bind((host, 0))
+        self._ticking = asyncio.create_task(self._tick_forever(), name="guided motion")
 
     def close(self) -> None:
         """Stop sending."""
         if self._ticking is not None:
             self._ticking.cancel()
-        if self._transport is not None:
-            self._transport.close()
+        opened, self._socket = self._socket, None
+        if opened is not None:
+            opened.close()
 
-    def connection_made(self, transport: asyncio.DatagramTransport) -> None:
-        """Keep the socket."""
-        self._transport = transport
+    def _hear(self) -> None:
+        """Take all set points that have come: those that a late machine left waiting would be followed late."""
+        with suppress(BlockingIOError):
+            while self._socket is not None:
+                # An answer to a port that was closed is an error of the next call: the controller sends on.
+                with suppress(ConnectionRefusedError):
+                    self._take(self._socket.recv(_MOST_BYTES + 1))
 
-    def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
+    def _take(self, data: bytes) -> None:
         """Take a set point; anything else is ignored."""
         if self._is_cut or self.own_faults.deaf or len(data) > _MOST_BYTES:
             return
@@ -150,9 +158,6 @@ class EgmSource(asyncio.DatagramProtocol):
             return
         self._reference, self.last_heard_s = reference, self._heard_s
         self.heard += 1
-
-    def error_received(self, exc: Exception) -> None:
-        """Ignore that nobody listens: the controller sends on."""
 
     @property
     def _is_cut(self) -> bool:
@@ -177,6 +182,7 @@ class EgmSource(asyncio.DatagramProtocol):
             self._tick()
 
     def _tick(self) -> None:
+        self._hear()
         self._watch()
         self._move()
         self._controller.advance()
@@ -221,19 +227,21 @@ class EgmSource(asyncio.DatagramProtocol):
 
     def _send(self) -> None:
         own, shared = self.own_faults, self._faults
-        if self._transport is None or self._client is None or self._is_cut or shared.frozen or own.wire.frozen:
+        if self._socket is None or self._client is None or self._is_cut or shared.frozen or own.wire.frozen:
             return
         packet = encode_measurement(self._measurement())
         sent = spoil(packet) if shared.garbage or own.wire.garbage else packet
         late_s = max(shared.slow_s, own.wire.slow_s)
         asyncio.get_running_loop().call_later(late_s, self._send_late, sent)
         if own.repeats and self._previous:
-            self._transport.sendto(self._previous, self._client)
+            self._send_late(self._previous)
         self._previous = packet
 
     def _send_late(self, packet: bytes) -> None:
-        if self._transport is not None and not self._transport.is_closing():
-            self._transport.sendto(packet, self._client)
+        if self._socket is not None and self._client is not None:
+            # What cannot be sent, or to where nobody listens, is lost.
+            with suppress(BlockingIOError, ConnectionRefusedError):
+                self._socket.sendto(packet, self._client)
 
     def _measurement(self) -> EgmMeasurement:
         measured = self._controller.plant.measured()[0]

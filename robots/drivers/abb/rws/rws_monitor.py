@@ -129,7 +129,7 @@ class RwsMonitor:
         try:
             await link.start()
         except RobotError as error:
-            raise RobotError(str(error), where=self._name, hint=error.hint) from error
+            raise RobotError(error.statement, where=self._name, hint=error.hint) from error
         self._link = link
 
     async def close(self) -> None:

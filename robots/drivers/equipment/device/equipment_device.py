@@ -151,7 +151,8 @@ class EquipmentDevice:
             self._link = None
             if not isinstance(error, RobotError):
                 raise
-            raise RobotError(f"equipment does not answer: {error}", where=self._name, hint=error.hint) from error
+            what = f"equipment does not answer: {error.statement}"
+            raise RobotError(what, where=self._name, hint=error.hint) from error
         return self
 
     async def __aexit__(

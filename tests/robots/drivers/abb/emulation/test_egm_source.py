@@ -83,13 +83,18 @@ async def test_measured_are_the_axes_of_the_plant_and_planned_what_they_were_sen
         try:
             await asyncio.sleep(0.0)
             loop = asyncio.get_running_loop()
-            running = False
+            running, sender = False, (HOST, 0)
             while not running:
                 # The program begins after a pause.
                 clock.step()
-                running = decode_measurement(await loop.sock_recv(driver, 4096)).mci is MciState.RUNNING
+                packet, sender = await loop.sock_recvfrom(driver, 4096)
+                running = decode_measurement(packet).mci is MciState.RUNNING
             goal = (0.4, 0.0, 0.0, 0.0, 0.0, 0.0)
-            source.datagram_received(encode_set_point(EgmSetPoint(number=1, time_ms=1, planned_deg=goal)), (HOST, 1))
+            # A machine that is late finds many that wait, and garbage among them.
+            for number, angle in enumerate((7.0, 5.0, 3.0, goal[0])):
+                waiting = EgmSetPoint(number=number, time_ms=number, planned_deg=(angle, *goal[1:]))
+                driver.sendto(encode_set_point(waiting), sender)
+                driver.sendto(b"no set point", sender)
             clock.step()
             first = decode_measurement(await loop.sock_recv(driver, 4096))
             assert first.planned_deg == goal

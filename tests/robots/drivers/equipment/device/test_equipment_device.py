@@ -34,6 +34,7 @@ from tests.robots.drivers.equipment.device.equipment_cell import (
     written,
 )
 from tests.robots.drivers.equipment.served_equipment import SIMULATED, served_equipment
+from tests.robots.own_address import own_address
 
 WHY = "a test"
 
@@ -236,3 +237,12 @@ async def test_an_engine_that_hangs_lets_outputs_go(tmp_path: Path) -> None:
             assert "the engine was silent" in state_of(cell).problem
             assert not (await switched(cell.bus, "valve", on=True)).success
             await until(lambda: outputs(cell.bus) == {"clamp": True, "valve": False})
+
+
+async def test_a_server_that_is_not_there_is_said_once_with_what_to_do(tmp_path: Path) -> None:
+    host = own_address()
+    file = written(tmp_path, host=host, port=1)
+    with pytest.raises(RobotError, match=f"equipment does not answer: {host}:1: cannot connect") as refused:
+        async with opened(file):
+            pass
+    assert str(refused.value).count("`flexcell equipment serve`") == 1
