@@ -34,8 +34,8 @@ _KINDS = frozenset((
 frame in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both.
 `body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `tool_changer` is a robot
 that has one, `changeable_tool` a part that it takes. `topic` is one that the cell document declares. `controller` is a
-robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an open
-cell knows those."""
+robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an
+open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",

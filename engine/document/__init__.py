@@ -14,7 +14,17 @@ from engine.document.cell import (
     load_cell,
 )
 from engine.document.cell_bodies import Fixture, Jitter, PartSpec, UnknownBody
-from engine.document.cell_devices import DeviceAxis, DevicePosition, DeviceSensor, DeviceSpec
+from engine.document.cell_bonds import BondSpec, joined_groups
+from engine.document.cell_devices import (
+    DeviceAxis,
+    DeviceBelt,
+    DevicePosition,
+    DeviceSensor,
+    DeviceSpec,
+    HingeAxis,
+    LightBarrier,
+    SlideAxis,
+)
 from engine.document.cell_frames import poses_in_world
 from engine.document.cell_perception import (
     DepthCamera,
@@ -65,6 +75,7 @@ __all__ = [
     "Behavior",
     "BehaviorDocument",
     "BehaviorSurvey",
+    "BondSpec",
     "Cell",
     "CellDocument",
     "CircularReference",
@@ -74,6 +85,7 @@ __all__ = [
     "DepthCamera",
     "DetectionRate",
     "DeviceAxis",
+    "DeviceBelt",
     "DevicePosition",
     "DeviceSensor",
     "DeviceSpec",
@@ -83,8 +95,10 @@ __all__ = [
     "FramedPlacement",
     "GuardSpec",
     "HexapodSpec",
+    "HingeAxis",
     "Jitter",
     "KeySignature",
+    "LightBarrier",
     "MachineSpec",
     "Module",
     "MujocoWorld",
@@ -98,6 +112,7 @@ __all__ = [
     "RealismName",
     "RetrySpec",
     "RobotSpec",
+    "SlideAxis",
     "SpeedAndSeparationMonitoring",
     "StateSignature",
     "StrictModel",
@@ -119,6 +134,7 @@ __all__ = [
     "compile_template",
     "decode_document",
     "docks_at_start",
+    "joined_groups",
     "leg_lengths_m",
     "load_behavior",
     "load_cell",

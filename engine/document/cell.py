@@ -16,6 +16,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_sizes
+from engine.document.cell_bonds import BondSpec, require_bonds
 from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
 from engine.document.cell_modules import (
@@ -26,7 +27,13 @@ from engine.document.cell_modules import (
     require_plugged,
     with_positions,
 )
-from engine.document.cell_perception import DepthCamera, OccupancyMap, Person, SpeedAndSeparationMonitoring
+from engine.document.cell_perception import (
+    DepthCamera,
+    OccupancyMap,
+    Person,
+    SpeedAndSeparationMonitoring,
+    require_detection_frames,
+)
 from engine.document.cell_store_spec import MongoStoreSpec, SqliteStoreSpec, require_no_secret
 from engine.document.cell_tools import require_changer
 from engine.document.device_pins import require_device_pins
@@ -35,7 +42,7 @@ from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.hexapods.hexapod_rules import require_hexapods
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
-from engine.document.placement import Name, Placement
+from engine.document.placement import Name
 from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -109,6 +116,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     ] = {}
     modules: dict[Name, ModuleSpec] = {}
     devices: dict[Name, DeviceSpec] = {}
+    bonds: dict[Name, BondSpec] = {}
     topics: Annotated[
         dict[TopicName, ParameterSpec],
         Meta(description="Topics on which everybody may publish a value of the given type"),
@@ -145,7 +153,7 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
     def with_modules(self, modules: Mapping[str, Module]) -> CellDocument:
         """Return the same cell with its connectors as frames, and with what stands on its modules."""
         frames, fixtures = {**self.frames, **self.connectors}, dict(self.fixtures)
-        parts, cameras, devices = dict(self.parts), dict(self.cameras), dict(self.devices)
+        parts, cameras, devices, bonds = dict(self.parts), dict(self.cameras), dict(self.devices), dict(self.bonds)
         for name, module in modules.items():
             spec = self.modules[name]
             added = docked(name, module.document, connector=spec.connector or WORLD, equipment=spec.equipment)
@@ -154,7 +162,10 @@ class CellDocument(StrictModel, frozen=True, kw_only=True):
             parts |= added.parts
             cameras |= added.cameras
             devices |= added.devices
-        return replace(self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras, devices=devices)
+            bonds |= added.bonds
+        return replace(
+            self, frames=frames, fixtures=fixtures, parts=parts, cameras=cameras, devices=devices, bonds=bonds
+        )
 
     def in_world(self) -> CellDocument:
         """Return the same cell with everything placed in the world."""
@@ -246,12 +257,13 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     require_sizes(document.fixtures, document.parts, source, unknown_bodies=document.unknown_bodies)
     on_bus = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
     require_devices(document.devices, source, fixtures=document.fixtures, taken=on_bus)
+    require_bonds(document.bonds, source, parts=document.parts, fixtures=document.fixtures)
     _require_drivers(document, source)
     _require_world(document, source)
     _require_people(document, source)
     _require_unknown_bodies(document, source)
     _require_regions(document, source)
-    _require_detection_frames(document, source)
+    require_detection_frames(document.cameras, document.frames, source)
     _require_topics(document, source)
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
@@ -382,17 +394,6 @@ def _require_regions(document: CellDocument, source: DocumentSource) -> None:
             where=source.position(("speed_and_separation_monitoring",), of_key=True),
             hint="add `cameras:` and `occupancy:`",
         )
-
-
-def _require_detection_frames(document: CellDocument, source: DocumentSource) -> None:
-    for name, camera in document.cameras.items():
-        detect = camera.detect
-        if detect is not None and detect.frame in document.frames and detect.frame_at != Placement():
-            raise DocumentError(
-                f"camera `{name}` detects in the frame `{detect.frame}` of the cell, whose pose is known",
-                where=source.position(("cameras", name, "detect", "frame_at"), of_key=True),
-                hint="remove `frame_at`, or choose another frame name",
-            )
 
 
 _RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))

@@ -14,6 +14,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from engine.document.cell_bodies import Fixture, PartSpec
+from engine.document.cell_bonds import BondSpec
 from engine.document.cell_devices import DeviceSpec, placed_device
 from engine.document.cell_frames import WORLD, FrameSpec
 from engine.document.cell_perception import DepthCamera
@@ -24,7 +25,7 @@ from engine.document.text.yaml_source import DataPath, DocumentSource, PositionT
 from engine.errors import DocumentError
 from engine.wording import did_you_mean
 
-_SECTIONS = ("frames", "fixtures", "parts", "cameras", "devices")
+_SECTIONS = ("frames", "fixtures", "parts", "cameras", "devices", "bonds")
 
 
 class ModuleSpec(StrictModel, frozen=True, kw_only=True):
@@ -46,6 +47,7 @@ class DockedModule(StrictModel, frozen=True, kw_only=True):
     parts: dict[str, PartSpec]
     cameras: dict[str, DepthCamera]
     devices: dict[str, DeviceSpec]
+    bonds: dict[str, BondSpec]
 
 
 def load_modules(
@@ -125,6 +127,7 @@ def docked(name: str, document: ModuleDocument, *, connector: str, equipment: st
         },
         cameras={named(key): camera(one) for key, one in document.cameras.items()},
         devices={named(key): placed_device(one, named, equipment=equipment) for key, one in document.devices.items()},
+        bonds={named(key): replace(one, part=named(one.part), to=named(one.to)) for key, one in document.bonds.items()},
     )
 
 

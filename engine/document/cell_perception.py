@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Annotated, Literal
 
 from msgspec import Meta
@@ -21,6 +21,8 @@ from engine.document.placement import (
     point_in_world,
 )
 from engine.document.text.decoding import StrictModel
+from engine.document.text.yaml_source import DocumentSource
+from engine.errors import DocumentError
 from engine.messages import Pose
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
@@ -193,3 +195,21 @@ class Person(StrictModel, frozen=True, kw_only=True):
         base = poses[self.frame]
         shoulder, hand_rests = (point_in_world(base, point) for point in (self.shoulder, self.hand_rests))
         return replace(self, shoulder=shoulder, hand_rests=hand_rests, frame="world")
+
+
+def require_detection_frames(
+    cameras: Mapping[str, DepthCamera], frames: Collection[str], source: DocumentSource
+) -> None:
+    """Require that no camera gives a pose to a frame of the cell, in which it detects.
+
+    Raises:
+        DocumentError: `where` is the position in the document.
+    """
+    for name, camera in cameras.items():
+        detect = camera.detect
+        if detect is not None and detect.frame in frames and detect.frame_at != Placement():
+            raise DocumentError(
+                f"camera `{name}` detects in the frame `{detect.frame}` of the cell, whose pose is known",
+                where=source.position(("cameras", name, "detect", "frame_at"), of_key=True),
+                hint="remove `frame_at`, or choose another frame name",
+            )

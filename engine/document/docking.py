@@ -42,6 +42,7 @@ def cell_as_docked(cell: Cell, docks: Docks) -> CellDocument:
         fixtures={name: one for name, one in document.fixtures.items() if not _of_module(cell, name)},
         parts={name: one for name, one in document.parts.items() if not _of_module(cell, name)},
         cameras={name: one for name, one in document.cameras.items() if not _of_module(cell, name)},
+        bonds={name: one for name, one in document.bonds.items() if not _of_module(cell, name)},
         devices={name: one for name, one in document.devices.items() if not _of_module(cell, name)},
     )
     joined = own.with_modules({name: cell.modules[name] for name in docks})

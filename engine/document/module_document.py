@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document.cell_bodies import Fixture, PartSpec, require_sizes
+from engine.document.cell_bonds import BondSpec, require_bonds
 from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, require_frames
 from engine.document.cell_perception import DepthCamera
@@ -41,6 +42,7 @@ class ModuleDocument(StrictModel, frozen=True, kw_only=True):
     devices: Annotated[
         dict[Name, DeviceSpec], Meta(description="What moves or switches: vices, clamps, slides, lamps")
     ] = {}
+    bonds: Annotated[dict[Name, BondSpec], Meta(description="What joins parts to one another or to fixtures")] = {}
 
     def uses_of_frames(self) -> Iterator[tuple[DataPath, str]]:
         """Yield in which frames things stand that are no frames, each with its path in the document."""
@@ -75,6 +77,7 @@ def module_of_source(source: DocumentSource, *, file: Path) -> Module:
     require_sizes(document.fixtures, document.parts, source)
     require_devices(document.devices, source, fixtures=document.fixtures)
     refuse_equipment(document.devices, source)
+    require_bonds(document.bonds, source, parts=document.parts, fixtures=document.fixtures)
     require_frames(
         document.frames,
         source,

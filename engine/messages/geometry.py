@@ -51,9 +51,11 @@ class PartPoses(Message, frozen=True, kw_only=True, omit_defaults=True):
     """The poses of the known parts of the cell in the world frame.
 
     `up` is the axis of a part, in its own frame, that points up when the part stands as the cell places it; null for
-    a part without one, such as a ball. Parts that are not listed have their z axis up.
+    a part without one, such as a ball. Parts that are not listed have their z axis up. `joined` are the parts and
+    fixtures to which bonds join a part; parts that are not listed are joined to nothing.
     """
 
     time_s: float
     poses: dict[str, Pose]
     up: dict[str, Vector3 | None] = {}
+    joined: dict[str, tuple[str, ...]] = {}

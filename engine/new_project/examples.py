@@ -35,6 +35,7 @@ EXAMPLES: Mapping[str, Example] = {
     "vice": Example(
         behavior="vice/clamp_block.yaml", shows="a slide brings a block, and a vice without sensors clamps it"
     ),
+    "cutter": Example(behavior="cutter/cut_battery.yaml", shows="a cutter cuts a battery off its board"),
 }
 """The examples by name."""
 

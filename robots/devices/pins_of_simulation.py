@@ -15,7 +15,7 @@ from engine.skills.digital_outputs import DigitalOutputs, SetOutput
 from robots.devices.device_sequence import POLL_S
 
 
-class WiredDevice(Protocol):
+class DeviceOnPins(Protocol):
     """A simulated device whose outputs and sensors are pins of equipment."""
 
     outputs: dict[str, bool]
@@ -30,7 +30,7 @@ class WiredDevice(Protocol):
         ...
 
 
-class SimulatedWiring:
+class PinFollower:
     """Connects devices with the pins of one piece of equipment, on the event loop, every 20 ms.
 
     Real equipment has inputs of its own: a device in the world is its picture then.
@@ -42,12 +42,12 @@ class SimulatedWiring:
         clock: The time.
     """
 
-    def __init__(self, equipment: str, devices: tuple[WiredDevice, ...], *, simulated: bool, clock: Clock) -> None:
+    def __init__(self, equipment: str, devices: tuple[DeviceOnPins, ...], *, simulated: bool, clock: Clock) -> None:
         self._equipment = equipment
         self._devices = devices
         self._simulated = simulated
         self._clock = clock
-        self._told: dict[str, bool] = {}
+        self._known_inputs: dict[str, bool] = {}
         self._kept: dict[str, bool] = {}
         self._task: asyncio.Task[None] | None = None
 
@@ -74,7 +74,7 @@ class SimulatedWiring:
             if known is not None and not known.problem:
                 await self._set_kept(bus)
                 self._take(outputs.latest or known)
-                await self._tell(bus)
+                await self._set_inputs(bus)
             await self._clock.sleep(POLL_S)
 
     def _take(self, known: DigitalOutputs) -> None:
@@ -88,7 +88,7 @@ class SimulatedWiring:
         for name, on in kept.items():
             await bus.call(SetOutput(name=name, value=on), to=self._equipment)
 
-    async def _tell(self, bus: SkillBus) -> None:
+    async def _set_inputs(self, bus: SkillBus) -> None:
         if not self._simulated:
             return
         for device in self._devices:
@@ -96,6 +96,6 @@ class SimulatedWiring:
             with suppress(RobotError):  # it is not in the cell, or the world is lost: its inputs stay as they are
                 sensors = device.sensors
             for name, on in sensors.items():
-                if self._told.get(name) != on:
+                if self._known_inputs.get(name) != on:
                     await bus.call(SimulateInput(name=name, value=on), to=self._equipment)
-                    self._told[name] = on
+                    self._known_inputs[name] = on

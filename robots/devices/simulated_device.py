@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from engine.bus import Holder
-from engine.document import DeviceAxis, DeviceSpec
+from engine.document import DeviceAxis, DeviceSensor, DeviceSpec, LightBarrier, SlideAxis
 from engine.errors import RobotError
 from engine.messages import Pose
+from robots.devices.light_barrier import is_interrupted
 from robots.model.transform import RigidTransform
 from robots.sim.commands.world_commands import BrakeLegs, DriveAxis
 from robots.sim.world.sim_world import SimWorld
@@ -18,7 +19,7 @@ _BEFORE_RAD = 0.5
 
 
 class SimulatedDevice:
-    """Implements `DevicePort` on a simulated world; `air`, `stuck`, `wrong` and `slipping` brakes are its faults.
+    """Implements `DevicePort` on a simulated world; `air`, `power`, `stuck`, `wrong`, `slipping` brakes are its faults.
 
     Args:
         device: The device as written.
@@ -33,7 +34,7 @@ class SimulatedDevice:
         self.slipping = False
         self.outputs: dict[str, bool] = dict.fromkeys(device.outputs, False)
         self.pressed: dict[str, float] = dict.fromkeys(device.axes, 0.0)
-        self.air = True
+        self.air = self.power = True
         self.stuck: set[str] = set()
         self.wrong: dict[str, bool] = {}
 
@@ -56,11 +57,20 @@ class SimulatedDevice:
     def sensors(self) -> Mapping[str, bool]:
         """What the sensors say."""
         axes = self.axes
-        true = {
-            name: self.air if sensor.axis is None else sensor.is_on(axes[sensor.axis])
-            for name, sensor in self._device.sensors.items()
-        }
-        return true | self.wrong
+        return {name: self._reads(sensor, axes) for name, sensor in self._device.sensors.items()} | self.wrong
+
+    def _reads(self, sensor: DeviceSensor, axes: Mapping[str, float]) -> bool:
+        if sensor.beam is not None:
+            return self._is_interrupted(sensor.beam)
+        return self.air if sensor.axis is None else sensor.is_on(axes[sensor.axis])
+
+    def _is_interrupted(self, beam: LightBarrier) -> bool:
+        home, scene = self._world.modules.home_of(beam.body), self._world.modules.scene
+        if home is None:
+            return False
+        measured = self._world.measured()
+        poses = [(part, RigidTransform.of(*measured.frame(part.name))) for part in (*scene.parts, *scene.unknown_parts)]
+        return is_interrupted(beam, RigidTransform.from_pose(home), poses)
 
     def drive(self) -> None:
         """Send what presses each axis to the world."""
@@ -72,6 +82,10 @@ class SimulatedDevice:
             locked = name in self.stuck
             force = 0.0 if locked else self.pressed[name]
             self._world.host.send(DriveAxis(fixture=axis.body, direction=force, locked=locked))
+        for name, belt in self._device.belts.items():
+            back = self.outputs[belt.output_back] if belt.output_back is not None else False
+            runs = (float(self.outputs[belt.output]) - float(back)) * self.power
+            self._world.host.send(DriveAxis(fixture=belt.body, direction=runs, locked=name in self.stuck))
         hexapod = self._device.hexapod
         if hexapod is not None:
             force = hexapod.friction_n if self.released or self.slipping else hexapod.holding_n
@@ -108,7 +122,7 @@ class SimulatedDevice:
             home = self._home(platform).inverse().then(home)
         moved = home.inverse().then(now)
         along = np.array(axis.along) / np.linalg.norm(axis.along)
-        if axis.joint == "slide":
+        if isinstance(axis, SlideAxis):
             return float(moved.xyz @ along)
         angle = float(2.0 * np.arctan2(moved.xyzw[:3] @ along, moved.xyzw[3]))
         # From a little before 0 on: an axis rests a little before its end.

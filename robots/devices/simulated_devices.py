@@ -19,7 +19,7 @@ from engine.skills.device_moves import DeviceFault, DeviceReading, SimulateDevic
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer, known_at
 from robots.devices.hexapod_server import HexapodServer
-from robots.devices.pins_of_simulation import SimulatedWiring
+from robots.devices.pins_of_simulation import PinFollower
 from robots.devices.simulated_device import SimulatedDevice
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
@@ -36,6 +36,7 @@ class _PortMemo(msgspec.Struct, frozen=True, kw_only=True):
     outputs: dict[str, bool]
     pressed: dict[str, float]
     air: bool
+    power: bool = True
     stuck: tuple[str, ...]
     wrong: dict[str, bool]
     slipping: bool = False
@@ -73,8 +74,8 @@ class SimulatedDevices:
             for name, device in self._devices.items()
             if device.equipment is None
         }
-        self._wirings = tuple(
-            SimulatedWiring(
+        self._pin_followers = tuple(
+            PinFollower(
                 equipment,
                 tuple(self._ports[name] for name, device in self._devices.items() if device.equipment == equipment),
                 simulated=cell.document.equipment[equipment].simulated,
@@ -101,8 +102,8 @@ class SimulatedDevices:
             if device.equipment is not None:
                 # While it is moved it publishes its state, and at rest its last one.
                 bus.topic(f"{name}/state", DeviceReading).subscribe(lambda _state: self._publish_poses())
-        for wiring in self._wirings:
-            wiring.start(bus)
+        for follower in self._pin_followers:
+            follower.start(bus)
 
     def grips(self) -> dict[str, GraspCommand]:
         """Return no grasp commands."""
@@ -118,6 +119,7 @@ class SimulatedDevices:
                 outputs=port.outputs,
                 pressed=port.pressed,
                 air=port.air,
+                power=port.power,
                 stuck=tuple(sorted(port.stuck)),
                 wrong=port.wrong,
                 slipping=port.slipping,
@@ -138,11 +140,12 @@ class SimulatedDevices:
                 continue
             port = self._ports[name]
             port.outputs, port.pressed, port.wrong = dict(known.outputs), dict(known.pressed), dict(known.wrong)
-            port.air, port.stuck, port.slipping = known.air, set(known.stuck), known.slipping
+            port.air, port.power, port.stuck = known.air, known.power, set(known.stuck)
+            port.slipping = known.slipping
             if name in self._servers:
                 self._servers[name].memo = known.server
-        for wiring in self._wirings:
-            wiring.keep()
+        for follower in self._pin_followers:
+            follower.keep()
         self._drive()
         self._publish_poses()
 
@@ -170,8 +173,8 @@ class SimulatedDevices:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         await self.stop()
-        for wiring in self._wirings:
-            await wiring.close()
+        for follower in self._pin_followers:
+            await follower.close()
         if self._following is not None:
             self._following.cancel()
             await asyncio.wait([self._following])
@@ -215,10 +218,11 @@ class SimulatedDevices:
         async def break_device(request: SimulateDeviceFault) -> SwitchResult:
             port, device = self._ports[name], self._devices[name]
             fault = request.fault
-            for word, known in ((fault.stuck, device.axes), (fault.sensor, device.sensors)):
+            moving = {**device.axes, **device.belts}
+            for word, known in ((fault.stuck, moving), (fault.sensor, device.sensors)):
                 if word and word not in known:
                     return SwitchResult(success=False, message=f"{name} has no {word}: it has {', '.join(known)}")
-            port.air = fault.air
+            port.air, port.power = fault.air, fault.power
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
             if not fault.brakes and device.hexapod is None:

@@ -7,13 +7,23 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import CellDocument, Fixture, HexapodSpec, Person, RobotSpec, UnknownBody
+from engine.document import (
+    CellDocument,
+    DeviceAxis,
+    Fixture,
+    HexapodSpec,
+    HingeAxis,
+    Person,
+    RobotSpec,
+    UnknownBody,
+)
 from engine.errors import CellError
 from robots.model.registry import model_location
-from robots.scene.jitter import jitter_pose
+from robots.scene.joined_bodies import drawn_bonds, part_poses
 from robots.scene.sim_scene import (
     ArmPlacement,
     AxisBody,
+    BeltBody,
     FixtureBody,
     HexapodBody,
     PartBody,
@@ -50,6 +60,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items()),
         fixtures=_fixtures(document),
         parts=tuple(_parts(document, seed)),
+        bonds=drawn_bonds(document.bonds, seed=seed),
         people=tuple(_person(name, person) for name, person in document.people.items()),
         frames=document.fixed_frames,
         unknown_fixtures=tuple(
@@ -66,17 +77,13 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
 def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
     bodies = {name: _fixture(name, fixture) for name, fixture in document.fixtures.items()}
     for axis in (axis for device in document.devices.values() for axis in device.axes.values()):
-        joint = AxisBody(
-            hinge=axis.joint == "hinge",
-            along=axis.along,
-            stroke=axis.stroke,
-            force=axis.force,
-            speed=axis.speed,
-            mass_kg=axis.mass_kg,
-        )
+        joint = _axis(axis)
         bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
         for name in axis.against:
             bodies[name] = msgspec.structs.replace(bodies[name], jaw_friction=axis.friction)
+    for belt in (belt for device in document.devices.values() for belt in device.belts.values()):
+        surface = BeltBody(along=belt.along, speed_m_s=belt.speed_m_s, acceleration_m_s2=belt.acceleration_m_s2)
+        bodies[belt.body] = msgspec.structs.replace(bodies[belt.body], belt=surface, jaw_friction=belt.friction)
     for hexapod in (device.hexapod for device in document.devices.values()):
         if hexapod is not None:
             platform = bodies[hexapod.platform]
@@ -96,6 +103,22 @@ def _hexapod(hexapod: HexapodSpec) -> HexapodBody:
         friction_n=hexapod.friction_n,
         damping_ns_m=hexapod.damping_ns_m,
         holding_n=hexapod.holding_n,
+    )
+
+
+def _axis(axis: DeviceAxis) -> AxisBody:
+    if isinstance(axis, HingeAxis):
+        stroke, force, speed = axis.stroke_rad, axis.torque_nm, axis.speed_rad_s
+    else:
+        stroke, force, speed = axis.stroke_m, axis.force_n, axis.speed_m_s
+    return AxisBody(
+        hinge=isinstance(axis, HingeAxis),
+        along=axis.along,
+        stroke=stroke,
+        force=force,
+        speed=speed,
+        mass_kg=axis.mass_kg,
+        cuts=axis.cuts,
     )
 
 
@@ -151,10 +174,8 @@ def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
 
 def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
     bodies: list[PartBody] = []
+    poses = part_poses(document.parts, document.bonds, seed=seed)
     for name, part in document.parts.items():
-        pose = part.at.pose()
-        if seed is not None:
-            pose = jitter_pose(pose, name=name, seed=seed, xy_m=part.jitter.xy_m, yaw_rad=part.jitter.yaw_rad)
         bodies.append(
             PartBody(
                 name=name,
@@ -163,7 +184,7 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
                 mass_kg=part.mass_kg,
                 magnetic=part.magnetic,
                 friction=part.friction,
-                pose=pose,
+                pose=poses[name],
                 rgba=_rgba(part.color),
                 tool=part.tool,
             )

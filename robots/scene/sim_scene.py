@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.document import RealismName, ToolChangerSpec, ToolSpec, arm_reach_m
+from engine.document import BondSpec, RealismName, ToolChangerSpec, ToolSpec, arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
@@ -73,6 +73,16 @@ class AxisBody(msgspec.Struct, frozen=True, kw_only=True):
     force: float
     speed: float
     mass_kg: float
+    cuts: tuple[str, ...] = ()
+    """The kinds of bonds that its body cuts."""
+
+
+class BeltBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The running surface of a fixture: its direction in the frame of the fixture, its speed and how that changes."""
+
+    along: Vector3
+    speed_m_s: float
+    acceleration_m_s2: float
 
 
 class HexapodBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -96,9 +106,9 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
 
     With `spring_n_m` above 0 it rests on a spring and a damper and yields along its z axis, like foam
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
-    `skin_friction` with any other body. With an `axis` it is moved by a device. `jaw_friction` is that of
-    the surface of what a device presses with, or against. With a `hexapod` it is a platform on legs; what is `on` a
-    platform is fixed to it, or has its axis on it.
+    `skin_friction` with any other body. With an `axis` it is moved by a device, with a `belt` its surface is.
+    `jaw_friction` is that of the surface of what a device presses with, or against, or carries with. With a `hexapod`
+    it is a platform on legs; what is `on` a platform is fixed to it, or has its axis on it.
     """
 
     name: str
@@ -111,6 +121,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     sprung_kg: float = 0.1
     skin_friction: float = 0.3
     axis: AxisBody | None = None
+    belt: BeltBody | None = None
     jaw_friction: float | None = None
     hexapod: HexapodBody | None = None
     on: str = ""
@@ -189,6 +200,7 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     With `separation` the speed of all arms follows their measured distance from people.
     The errors of the arms that `realism` names are drawn with `seed`, see `robots.scene.realism`.
     The bodies of all `modules` are in it, plugged or not: a world is built once, and modules come and go in it.
+    The `bonds` have the limits that were drawn for this world.
     """
 
     step_s: float = 0.001
@@ -207,3 +219,4 @@ class SimScene(msgspec.Struct, frozen=True, kw_only=True):
     unknown_parts: tuple[PartBody, ...] = ()
     separation: SeparationRule | None = None
     modules: tuple[ModuleBodies, ...] = ()
+    bonds: dict[str, BondSpec] = {}

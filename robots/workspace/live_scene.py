@@ -275,6 +275,11 @@ class LiveScene:
     def _follow_grips(self, measured: MeasuredPoses) -> set[str]:
         """Take the parts that tools are measured to hold, and drop those that they have let go; return their names."""
         grips = {(arm.holds, name) for name, arm in measured.arms.items() if arm.holds in self._parts}
+        # What is held carries what is joined to it.
+        carrying = (grips - self._detached_in_grip) | {
+            (name, held.part.arm) for name, held in self._held.items() if not held.by_contact
+        }
+        grips |= {(other, arm) for name, arm in carrying for other in measured.joined_parts(name)}
         changed: set[str] = set()
         for name, held in tuple(self._held.items()):
             if held.by_contact and (name, held.part.arm) not in grips:

@@ -6,6 +6,7 @@ from engine.messages.tool_hold import ToolHold
 from robots.model.transform import RigidTransform
 from robots.scene.sim_scene import SimScene
 from robots.sim.grip.tool_reading import state_publisher
+from robots.sim.loop.bond_reading import joined_bodies
 from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
 from robots.sim.world.sim_world import SimWorld
 from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
@@ -38,8 +39,12 @@ class WorldPoseReader:
             )
             for name, tool in self._arms.items()
         }
+        scene = self._world.modules.scene
         return MeasuredPoses(
-            arms=arms, parts={part.name: frame(part.name) for part in self._world.modules.scene.parts}, link=link
+            arms=arms,
+            parts={part.name: frame(part.name) for part in scene.parts},
+            link=link,
+            joined=joined_bodies(scene.bonds, snapshot.bonds()) if scene.bonds else {},
         )
 
 

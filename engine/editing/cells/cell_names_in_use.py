@@ -91,6 +91,9 @@ def uses_of(data: Fields, section: CellSection, name: str) -> Iterator[NameInUse
         for module, item in items_in(data, "modules"):
             if item.get("connector") == name:
                 yield NameInUse(item, "connector", module)
+    if section in ("parts", "fixtures", "modules"):
+        for bond, item in items_in(data, "bonds"):
+            yield from (NameInUse(item, key, bond) for key in ("part", "to") if is_meant(item.get(key)))
     if section in ("parts", "modules"):
         for camera, item in items_in(data, "cameras"):
             labels = fields_in(item.get("detect"), "labels")

@@ -10,6 +10,7 @@ from engine.document.cell import Cell, cell_of_source
 from engine.document.simulated_devices import with_simulated_devices
 from engine.document.text.yaml_source import DataPath
 from engine.errors import DocumentError
+from engine.sweep.subject.joined_displacement import carried_parts
 from engine.wording.suggestions import did_you_mean
 
 _AXES = ("x_m", "y_m", "z_m")
@@ -21,7 +22,7 @@ def varied_cell(cell: Cell, values: Mapping[str, object]) -> Cell:
     """Return a cell with the values of its factors; others in `values` are ignored.
 
     A displacement is added to the written pose of a part: metres along the axes of the world, and radians about its
-    z axis. Paths of files stay relative to the document.
+    z axis; what is joined to it is displaced with it. Paths of files stay relative to the document.
 
     Args:
         cell: The cell as written.
@@ -42,6 +43,10 @@ def varied_cell(cell: Cell, values: Mapping[str, object]) -> Cell:
     if data is cell.source.data:
         return cell
     varied = cell_of_source(replace(cell.source, data=data), file=cell.file)
+    displaced = {address.split(".")[1] for address in values if address.startswith("displace.")}
+    for name, at in carried_parts(cell, varied.document, displaced):
+        data = _with_value(data, ("parts", name, "at"), {"xyz": list(at.xyz), "rpy": list(at.rpy)}, f"displace.{name}")
+        varied = cell_of_source(replace(cell.source, data=data), file=cell.file)
     varied = with_simulated_devices(varied, tuple(cell.simulated))
     for device, driver in varied.document.real_devices.items():
         if device not in cell.document.real_devices:

@@ -6,6 +6,7 @@ rest there. So no index changes, nothing is compiled while arms move, and a modu
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,8 +53,9 @@ class DockedModules:
     is away, and its pose on the module.
     """
 
-    def __init__(self, cell: CellModel, physics: Physics) -> None:
+    def __init__(self, cell: CellModel, physics: Physics, *, joined_to: Callable[[Collection[int]], set[int]]) -> None:
         self._physics = physics
+        self._joined_to = joined_to
         self._names = cell.body_names
         self._fixed = {cell.body_names.index(one.name) for one in (*cell.scene.fixtures, *cell.scene.unknown_fixtures)}
         self._modules = {module.name: _module(cell, module.name) for module in cell.scene.modules}
@@ -69,6 +71,11 @@ class DockedModules:
         if self._away_qpos.size:
             physics.refresh()
 
+    @property
+    def away(self) -> tuple[str, ...]:
+        """The parts that are away with their modules."""
+        return tuple(part.name for part in self._parts if part.is_away)
+
     def pin(self) -> None:
         """Keep the parts that are away where they are."""
         if self._away_qpos.size:
@@ -82,7 +89,7 @@ class DockedModules:
             refused = self._unplug(module, held)
         else:
             refused = self._plug(module, RigidTransform.from_pose(command.pose))
-        return ModulePlaced(refused=refused, away=tuple(part.name for part in self._parts if part.is_away))
+        return ModulePlaced(refused=refused, away=self.away)
 
     def reset(self) -> None:
         """Return the parts of modules to where they are at the start: on their modules, wherever these are now."""
@@ -132,8 +139,10 @@ class DockedModules:
         others: dict[int, float] = {}
         while bodies:
             near = self._physics.near(bodies, within_m=_TOUCHING_M)
-            going = own.keys() & near.keys()
+            joined = self._joined_to(bodies)
+            going = own.keys() & (near.keys() | joined)
             others = {body: gap_m for body, gap_m in near.items() if body not in going and body not in self._fixed}
+            others |= dict.fromkeys(joined - going, 0.0)
             if not going:
                 break
             bodies |= going

@@ -14,18 +14,25 @@ class ImageLayout:
     """Where each quantity lies in an image.
 
     First the step count, then the physics state from MuJoCo, then where modules are, as in
-    `robots.sim.loop.docked_modules`, then for each arm its set point and reflex (1 or 0), and for each tool its
-    command, as in `robots.sim.grip.mechanics.ToolMechanics`, for each tool changer its `locks`; last the motions and
-    contacts of people, as in `robots.sim.people.people_loop`.
+    `robots.sim.loop.docked_modules`, then what is broken, as in `robots.sim.loop.bonds`, then for each arm its
+    set point and reflex (1 or 0), and for each tool its command, as in `robots.sim.grip.mechanics.ToolMechanics`, for
+    each tool changer its `locks`; last the motions and contacts of people, as in `robots.sim.people.people_loop`.
     """
 
     def __init__(
-        self, arms: tuple[ArmSummary, ...], *, state_size: int, modules_size: int = 0, people_size: int = 0
+        self,
+        arms: tuple[ArmSummary, ...],
+        *,
+        state_size: int,
+        modules_size: int = 0,
+        bonds_size: int = 0,
+        people_size: int = 0,
     ) -> None:
         self.steps = 0
         self.physics = slice(1, 1 + state_size)
         self.modules = slice(self.physics.stop, self.physics.stop + modules_size)
-        at = self.modules.stop
+        self.bonds = slice(self.modules.stop, self.modules.stop + bonds_size)
+        at = self.bonds.stop
         self.set_points: dict[str, slice] = {}
         self.reflexes: dict[str, int] = {}
         self.tools: dict[str, slice] = {}

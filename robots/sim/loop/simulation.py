@@ -34,6 +34,8 @@ from robots.sim.grip.mechanics import ToolDrive, ToolMechanics, new_mechanics
 from robots.sim.grip.tool_summary import tool_summary
 from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.belts import Belts
+from robots.sim.loop.bonds import Bonds
 from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
@@ -70,7 +72,9 @@ class Simulation:
         self._set_home()
         # Before modules go: the same for all worlds of one scene.
         model = fingerprint(cell.model)
-        self._modules = DockedModules(cell, physics)
+        self._bonds = Bonds(cell, physics)
+        self._modules = DockedModules(cell, physics, joined_to=self._bonds.joined_to)
+        self._bonds.keep_apart(self._modules.away)
         self._contacts = ContactReader(cell, physics)
         bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
         driven = {placement.name for placement in cell.scene.arms if placement.driven}
@@ -94,7 +98,8 @@ class Simulation:
             for arm in cell.arms
         }
         self._hands = ExternalPushes(physics)
-        self._axes, self._legs = DeviceAxes(cell, physics), HexapodBrakes(cell, physics)
+        self._axes, self._belts = DeviceAxes(cell, physics), Belts(cell, physics)
+        self._legs = HexapodBrakes(cell, physics)
         self._held_parts = HeldParts(cell, physics)
         self._locks = ToolLocks(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
@@ -118,6 +123,7 @@ class Simulation:
             arms,
             state_size=physics.state_size,
             modules_size=self._modules.image_size,
+            bonds_size=self._bonds.image_size,
             people_size=self._people.image_size,
         )
         self.summary = _summary(cell, arms, model=model, image=self.image_layout)
@@ -180,6 +186,8 @@ class Simulation:
                 self._qvel[self._cell.free_dof] = 0.0
                 self._locks.reset()
                 self._modules.reset()
+                self._bonds.reset()
+                self._bonds.keep_apart(self._modules.away)
             case RestoreWorld():
                 self._restore(command.image)
             case StopAll() | ShutDownWorld():
@@ -190,12 +198,15 @@ class Simulation:
         """Plug or unplug a module from the next step on; nothing else of the state changes."""
         numbers = [self._held_number(name) for name in self._arms]
         held = frozenset(self._cell.parts[number] for number in numbers if number >= 0)
-        return self._modules.place(command, held=held)
+        placed = self._modules.place(command, held=held)
+        self._bonds.keep_apart(placed.away)
+        return placed
 
     def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | SwitchToolLock) -> None:
         match command:
             case DriveAxis():
                 self._axes.drive(command)
+                self._belts.drive(command)
             case BrakeLegs():
                 self._legs.brake(command)
             case SwitchToolLock():
@@ -215,6 +226,7 @@ class Simulation:
             arm.place()
         self._held_parts.place()
         self._modules.pin()
+        self._belts.run(self.step_s)
         self._physics.start_step()
         self._legs.step()
         for tool in self._tools.values():
@@ -225,6 +237,7 @@ class Simulation:
         self._hands.step(self.step_s)
         self._physics.finish_step()
         self._locks.step()
+        self._bonds.step()
         self._people.count()
         self.steps += 1
         self.measures.step(self.steps)
@@ -247,6 +260,7 @@ class Simulation:
         values[layout.quaternions] = wxyz.reshape(-1)
         self._people.write_report(values[layout.people])
         values[layout.measures] = self.measures.summed_up
+        self._bonds.write_report(values[layout.bonds])
 
     def write_image(self, image: Array) -> None:
         """Write the complete state into an array of `image_layout`'s size."""
@@ -254,6 +268,7 @@ class Simulation:
         image[layout.steps] = self.steps
         self._physics.read_state(image[layout.physics])
         self._modules.write_image(image[layout.modules])
+        self._bonds.write_image(image[layout.bonds])
         for name, arm in self._arms.items():
             image[layout.set_points[name]] = arm.control.motion.position
             image[layout.reflexes[name]] = arm.control.reflex
@@ -271,7 +286,9 @@ class Simulation:
         self._hands.let_go()
         self._modules.take_over(image[layout.modules])
         self._physics.rest_at(image[layout.physics])
+        self._bonds.take_over(image[layout.bonds], away=self._modules.away)
         self._held_parts.restart()
+        self._belts.stand()
         for name, arm in self._arms.items():
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
         for name, tool in self._tools.items():
@@ -338,4 +355,5 @@ def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, model: str, image
         image_size=image.size,
         modules_at=image.modules.start,
         people=tuple(person.name for person in cell.people),
+        bonds=tuple(cell.scene.bonds),
     )

@@ -11,6 +11,7 @@ from engine.messages import Quaternion, Vector3
 from robots.port import ArmSample, Array, PermittedSpeed
 from robots.sim.grip.tool_reading import ToolReading
 from robots.sim.grip.tool_summary import ToolSummary
+from robots.sim.loop.bond_reading import BOND_FIELDS, BondReading, bond_readings
 from robots.sim.measures.measure_layout import MeasureLayout
 from robots.sim.people.person_report import PersonSample, person_sample, report_size
 
@@ -45,6 +46,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     image_size: int
     modules_at: int = 0
     people: tuple[str, ...] = ()
+    bonds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +114,8 @@ class SnapshotLayout:
             {arm.name: arm.tool.kind if arm.tool is not None else None for arm in summary.arms}
         )
         self.measures = slice(self.people.stop, self.people.stop + self.measure_layout.size)
-        self.size = self.measures.stop
+        self.bonds = slice(self.measures.stop, self.measures.stop + BOND_FIELDS * len(summary.bonds))
+        self.size = self.bonds.stop
 
     def new_array(self) -> Array:
         """Return an array of the right size, zero."""
@@ -184,6 +187,10 @@ class SimSnapshot:
     def measures(self) -> dict[str, float]:
         """Measures by name, as of a fraction of a second before."""
         return self._layout.measure_layout.read(self._values[self._layout.measures])
+
+    def bonds(self) -> dict[str, BondReading]:
+        """State and load of each bond."""
+        return bond_readings(self._values[self._layout.bonds], self._layout.summary.bonds)
 
     def tool_progress(self, name: str, motion: int) -> float | None:
         """Progress of a tool's motion; None if the tool does not execute this motion."""

@@ -117,7 +117,7 @@ class ToolLocks:
         return next((i for i, coupling in enumerate(lock.couplings) if self._physics.is_coupled(coupling)), -1)
 
     def _is_overloaded(self, lock: _Lock, held: int) -> bool:
-        force_n, torque_nm = self._physics.coupling_load(lock.couplings[held])
+        ((force_n, torque_nm),) = self._physics.coupling_loads((lock.couplings[held],))
         return force_n > lock.spec.force_n or torque_nm > lock.spec.torque_nm
 
     def _meets(self, lock: _Lock, tool: _Tool, *, factor: float) -> bool:

@@ -14,7 +14,8 @@ from engine.messages import Pose
 from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
-from robots.sim.physics.device_axis import add_axis, add_jaw
+from robots.sim.physics.bond_constraint import add_bonds
+from robots.sim.physics.device_axis import add_axis, add_belt, add_jaw
 from robots.sim.physics.hexapod_legs import add_legs, place_on
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
@@ -120,6 +121,7 @@ def cell_spec(scene: SimScene) -> Any:
         _add_arm(spec, arm, arm.robot(), scene.fixtures, errors)
     _add_people(spec, scene)
     add_couplings(spec, scene)
+    add_bonds(spec, scene.bonds)
     return spec
 
 
@@ -156,6 +158,8 @@ def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, Fixture
             add_axis(spec, body, geom, fixture.name, fixture.axis)
         elif fixture.on:
             geom.mass = 0.0  # that of the platform contains it
+        if fixture.belt is not None:
+            add_belt(body, geom, fixture.name, fixture.belt)
         return
     for centre, size in tray_boxes(fixture):
         geom = body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from robots.scene.sim_scene import AxisBody
+from robots.scene.sim_scene import AxisBody, BeltBody
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF
+
+_BELT_KG = 1e4
 
 
 def add_jaw(geom: Any, *, friction: float) -> None:
@@ -14,6 +16,16 @@ def add_jaw(geom: Any, *, friction: float) -> None:
     geom.priority, geom.condim = 1, 4
     geom.solref, geom.solimp = list(PAD_SOLREF), list(PAD_SOLIMP)
     geom.friction[0] = friction
+
+
+def add_belt(body: Any, geom: Any, name: str, belt: BeltBody) -> None:
+    """Let the surface of a fixture run: the fixture slides at the speed of the belt and is set back after each step.
+
+    It is so heavy that what it carries does not change its speed within a step.
+    """
+    body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=list(belt.along))
+    body.gravcomp = 1.0
+    geom.mass = _BELT_KG
 
 
 def add_axis(spec: Any, body: Any, geom: Any, name: str, axis: AxisBody) -> None:

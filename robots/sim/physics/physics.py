@@ -21,6 +21,7 @@ mujoco: Any = load_mujoco()
 
 # Distances are measured up to this one.
 _FAR_M = 100.0
+_CYLINDER = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
 
 
 class Physics:
@@ -60,6 +61,9 @@ class Physics:
         self.geom_rotations: Array = self._data.geom_xmat
         self.geom_radii: Array = model.geom_rbound.copy()
         self._probe: Any = None
+        # The rows of the constraints of bonds; they change where a bond begins or ends to act.
+        self._coupling_rows: dict[tuple[int, ...], list[tuple[int, int]]] = {}
+        self._couplings_changed = False
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -67,6 +71,9 @@ class Physics:
 
     def start_step(self) -> None:
         """Compute poses and contacts of the present state."""
+        if self._couplings_changed:
+            self._coupling_rows.clear()
+            self._couplings_changed = False
         self._step1(self._model, self._data)
         self._attractions.clear()
 
@@ -93,29 +100,56 @@ class Physics:
         """Return the number of a tendon in `tendon_lengths`."""
         return int(self._model.tendon(name).id)
 
+    def run_joint(self, joint: str, velocity: float) -> None:
+        """Let a joint with one axis have a velocity, in m/s or rad/s, in the next step, and be at 0 before it."""
+        found = self._model.joint(joint)
+        self.positions[found.qposadr[0]] = 0.0
+        self.velocities[found.dofadr[0]] = velocity
+
     def set_dry_friction(self, joint: str, force: float) -> None:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
         self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force
 
     def coupling_number(self, name: str) -> int:
-        """Return the number of a coupling of two bodies."""
+        """Return the number of a coupling: a constraint that holds two bodies together."""
         return int(self._model.equality(name).id)
 
     def couple(self, coupling: int, *, on: bool) -> None:
-        """Hold two bodies together from the next step on, or let them go."""
+        """Hold two bodies together from the next step on, or let them go; it is part of the state."""
         self._data.eq_active[coupling] = on
+        self._couplings_changed = True
 
     def is_coupled(self, coupling: int) -> bool:
         """Return whether a coupling holds."""
         return bool(self._data.eq_active[coupling])
 
-    def coupling_load(self, coupling: int) -> tuple[float, float]:
-        """Return the force, N, and the torque, N m, with which a coupling held in the last step."""
+    def coupling_loads(self, couplings: tuple[int, ...]) -> list[tuple[float, float]]:
+        """Return the force in N and the torque in N m, about its place, that each coupling carried in the last step.
+
+        Args:
+            couplings: Their numbers, ascending.
+        """
         data = self._data
-        rows = np.flatnonzero((data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == coupling))
-        force = data.efc_force[rows]
-        # Rotations are those of half the angle.
-        return float(np.linalg.norm(force[:3])), 0.5 * float(np.linalg.norm(force[3:]))
+        count = int(data.ne)
+        rows = self._coupling_rows.get(couplings)
+        if rows is None:
+            numbers = data.efc_id[:count]
+            first = np.searchsorted(numbers, couplings).tolist()
+            rows = list(zip(first, np.searchsorted(numbers, couplings, side="right").tolist(), strict=True))
+            self._coupling_rows[couplings] = rows
+        loads: list[float] = data.efc_force[:count].tolist()
+        # The rows of a weld's rotation are those of a quaternion, of half the angle.
+        return [(math.hypot(*loads[a : min(a + 3, b)]), 0.5 * math.hypot(*loads[a + 3 : b])) for a, b in rows]
+
+    def gap_m(self, geom: int, point: Array) -> float:
+        """Return the distance of a point in the world from a box or an upright cylinder, 0 inside."""
+        inside = np.abs((point - self.geom_position(geom)) @ self.geom_axes(geom))
+        size: Array = self._model.geom_size[geom]
+        if int(self._model.geom_type[geom]) == _CYLINDER:
+            beyond = np.array([np.hypot(inside[0], inside[1]) - size[0], inside[2] - size[1]])
+        else:
+            beyond = inside - size
+        return float(np.linalg.norm(np.maximum(beyond, 0.0)))
 
     def members(self, body: int) -> NDArray[np.intp]:
         """Return the numbers of a body and of all its descendants."""
@@ -299,6 +333,7 @@ class Physics:
         # Leftovers outside the state must not affect later steps either.
         mujoco.mj_resetData(self._model, self._data)
         mujoco.mj_setState(self._model, self._data, state, self._state_kind)
+        self._couplings_changed = True
         self.velocities[:] = 0.0
         self._pushes[:] = 0.0
         self.refresh()

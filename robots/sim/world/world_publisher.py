@@ -9,9 +9,11 @@ from collections.abc import Callable
 
 from engine.bus import SkillBus
 from engine.messages import FramePoses, PartPoses, Pose, SceneDescription, Vector3
+from engine.messages.bonds import BONDS_TOPIC, BondState, CellBonds
 from robots.scene.sim_scene import SimScene
 from robots.scene.up_axis import up_axis
 from robots.sim.host.world_host import WorldHost
+from robots.sim.loop.bond_reading import joined_bodies
 from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.physics.hexapod_drawing import leg_frames
 from robots.sim.world.arm_topics import arm_topics
@@ -47,6 +49,10 @@ class WorldPublisher:
         self._fast = (*arms, *(topic for topic in topics if topic is not None))
         self._frame_topic = bus.topic("cell/frames", FramePoses)
         self._part_topic = bus.topic("cell/parts", PartPoses)
+        self._bonds = scene.bonds
+        self._bond_topic = bus.topic(BONDS_TOPIC, CellBonds) if scene.bonds else None
+        if self._bond_topic is not None:
+            self._bond_topic.provide(lambda: self._bond_states(host.snapshot()))
         self._frame_topic.provide(lambda: self._frame_poses(host.snapshot()))
         self._part_topic.provide(lambda: self._part_poses(host.snapshot()))
         self._scene_topic = bus.topic("cell/scene", SceneDescription)
@@ -80,7 +86,7 @@ class WorldPublisher:
     def read(self) -> bool:
         """True while any changing topic has subscribers."""
         slow = self._frame_topic.subscriber_count + self._part_topic.subscriber_count
-        return slow > 0 or self._fast_read()
+        return slow > 0 or self._bonds_read() or self._fast_read()
 
     def publish_joints(self) -> bool:
         """Publish joints, forces and tools to subscribers; true if there are any."""
@@ -95,14 +101,20 @@ class WorldPublisher:
     def publish_frames(self) -> bool:
         """Publish frames and parts to subscribers; true if there are any."""
         frames, parts = self._frame_topic.subscriber_count > 0, self._part_topic.subscriber_count > 0
-        if not (frames or parts):
+        bonds = self._bonds_read()
+        if not (frames or parts or bonds):
             return False
         snapshot = self._host.snapshot()
         if frames:
             self._frame_topic.publish(self._frame_poses(snapshot))
         if parts:
             self._part_topic.publish(self._part_poses(snapshot))
+        if bonds and self._bond_topic is not None:
+            self._bond_topic.publish(self._bond_states(snapshot))
         return True
+
+    def _bonds_read(self) -> bool:
+        return self._bond_topic is not None and self._bond_topic.subscriber_count > 0
 
     def _fast_read(self) -> bool:
         return any(topic.read for topic in self._fast)
@@ -121,4 +133,20 @@ class WorldPublisher:
     def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
         xyz, xyzw = snapshot.frames()
         poses = {name: Pose(xyz=xyz[row], xyzw=xyzw[row]) for row, name in self._part_rows}
-        return PartPoses(time_s=snapshot.time_s, poses=poses, up=self._up)
+        joined = {name: ends for name, ends in joined_bodies(self._bonds, snapshot.bonds()).items() if name in poses}
+        return PartPoses(time_s=snapshot.time_s, poses=poses, up=self._up, joined=joined)
+
+    def _bond_states(self, snapshot: SimSnapshot) -> CellBonds:
+        readings = snapshot.bonds()
+        states = {
+            name: BondState(
+                kind=bond.kind,
+                part=bond.part,
+                to=bond.to,
+                broken_by=readings[name].broken_by,
+                force_n=round(readings[name].force_n, 3),
+                torque_nm=round(readings[name].torque_nm, 4),
+            )
+            for name, bond in self._bonds.items()
+        }
+        return CellBonds(time_s=snapshot.time_s, bonds=states)

@@ -19,7 +19,7 @@ fixtures:
 devices:
   jaws:
     axes:
-      main: {body: jaw, along: [1, 0, 0], stroke: 0.05, force: 60, speed: 0.05, against: [body], output: close}
+      main: {body: jaw, joint: slide, along: [1, 0, 0], stroke_m: 0.05, force_n: 6, speed_m_s: 1, against: [body], output: close}
     sensors:
       shut: {axis: main, at_least: 0.02, at_most: 0.04}
       air: {air: true}
@@ -28,7 +28,7 @@ devices:
       closed: {steps: [{set: {close: true}}, {wait_for: {shut: true}}], sensors: {shut: true}, time: 1}
     interlocks:
       - {position: closed, device: jaws, at: open}
-"""
+"""  # noqa: E501
 CELL = """\
 flexcell: 1
 cell: bench
@@ -63,10 +63,12 @@ def test_what_a_device_names_has_its_name_in_the_cell(tmp_path: Path) -> None:
         ("body: jaw", "body: jow", "there is no fixture `jow`", 9),
         ("against: [body]", "against: [bodi]", "there is no fixture `bodi`", 9),
         ("along: [1, 0, 0]", "along: [0, 0, 0]", "this direction has no length", 9),
+        ("joint: slide, ", "", "`joint`", 9),
+        ("force_n: 6", "torque_nm: 6", "torque_nm", 9),
         ("output: close", "output: clse", "no step sets the output `clse`", 9),
         ("{axis: main, at_least", "{axis: mein, at_least", "there is no axis `mein`", 11),
         ("at_least: 0.02", "at_least: 0.05", "sensor `shut` is never on", 11),
-        ("{air: true}", "{}", "sensor `air` has either an `axis` or `air: true`", 12),
+        ("{air: true}", "{}", "sensor `air` has either an `axis`, a `beam` or `air: true`", 12),
         ("wait_for: {shut", "wait_for: {shot", "there is no sensor `shot`", 15),
         ("sensors: {shut: true}", "sensors: {shot: true}", "there is no sensor `shot`", 15),
         ("[{set: {close: false}}]", "[{set: {close: false}, pause: 1}]", "a step has one of", 14),
@@ -89,9 +91,8 @@ def test_a_name_that_leads_nowhere_is_refused_at_its_place(
 
 
 def test_a_fixture_is_moved_by_one_axis_only(tmp_path: Path) -> None:
-    second = (
-        "      other: {body: jaw, along: [1, 0, 0], stroke: 0.05, force: 6, speed: 0.05, output: close}\n    sensors:"
-    )
+    axis = "{body: jaw, joint: slide, along: [1, 0, 0], stroke_m: 0.05, force_n: 6, speed_m_s: 0.05, output: close}"
+    second = f"      other: {axis}\n    sensors:"
     with pytest.raises(DocumentError, match="`jaw` is moved by `main` of `jaws` too"):
         vice(tmp_path, ("    sensors:", second))
 

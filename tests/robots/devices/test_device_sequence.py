@@ -14,8 +14,9 @@ from engine.document.cell_devices import DeviceSpec
 from engine.skills.device_moves import DeviceResult
 from robots.devices.device_sequence import DeviceSequence
 
+MAIN = {"body": "jaw", "joint": "slide", "along": [1, 0, 0], "stroke_m": 0.05, "force_n": 60, "speed_m_s": 0.1}
 VICE = {
-    "axes": {"main": {"body": "jaw", "along": [1, 0, 0], "stroke": 0.05, "force": 60, "speed": 0.1, "output": "main"}},
+    "axes": {"main": {**MAIN, "output": "main"}},
     "sensors": {
         "is_open": {"axis": "main", "at_most": 0.01},
         "shut": {"axis": "main", "at_least": 0.02},

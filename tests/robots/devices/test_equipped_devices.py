@@ -38,7 +38,7 @@ devices:
   slide:
     equipment: valves
     axes:
-      travel: {body: carriage, along: [0, 1, 0], stroke: 0.2, force: 80, speed: 0.2, output: go}
+      travel: {body: carriage, joint: slide, along: [0, 1, 0], stroke_m: 0.2, force_n: 80, speed_m_s: 0.2, output: go}
     sensors:
       at_front: {axis: travel, at_most: 0.003}
       at_back: {axis: travel, at_least: 0.197}
@@ -103,7 +103,7 @@ async def simulate(bus: SkillBus, name: str, *, on: bool) -> None:
     assert (await bus.call(SimulateInput(name=name, value=on), to="valves")).success
 
 
-async def test_its_outputs_are_set_and_its_inputs_tell_where_it_is(tmp_path: Path) -> None:
+async def test_its_outputs_are_set_and_its_inputs_say_where_it_is(tmp_path: Path) -> None:
     async with opened(tmp_path, WITHOUT_WORLD) as cell:
         bus = cell.bus
         assert (state(bus, "slide").sensed, state(bus, "slide").axes) == ("between", {})

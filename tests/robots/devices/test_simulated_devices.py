@@ -29,7 +29,7 @@ fixtures:
 devices:
   slide:
     axes:
-      travel: {body: carriage, along: [0, 1, 0], stroke: 0.2, force: 80, speed: 0.2, output: go}
+      travel: {body: carriage, joint: slide, along: [0, 1, 0], stroke_m: 0.2, force_n: 80, speed_m_s: 0.2, output: go}
     sensors:
       at_front: {axis: travel, at_most: 0.003}
       at_back: {axis: travel, at_least: 0.197}
@@ -42,7 +42,7 @@ devices:
   clamp:
     axes:
       bolt:
-        {body: clamp, along: [1, 0, 0], stroke: 0.05, force: 80, speed: 0.2, self_holding: true, output: out, output_back: in}
+        {body: clamp, joint: slide, along: [1, 0, 0], stroke_m: 0.05, force_n: 80, speed_m_s: 0.2, self_holding: true, output: out, output_back: in}
     positions:
       free: {steps: [{set: {out: false, in: true}}], time: 0.5}
       clamped: {steps: [{set: {out: true, in: false}}], time: 0.5}

@@ -11,6 +11,7 @@ import pytest
 from engine.document.text.yaml_source import parse_source
 from engine.editing.cells.cell_draft import SECTIONS
 from engine.editing.cells.cell_edit import AddCellItem, CellSection, RemoveCellItem, RenameCellItem, SetCellField
+from engine.editing.cells.cell_editing import apply_cell_edits
 from tests.engine.editing.cells.cell_texts import CELL, edited, refusal
 
 ROOT = Path(__file__).parents[4]
@@ -158,6 +159,21 @@ def test_renaming_follows_frames_of_cameras_labels_connectors_and_what_stands_on
     assert "    at: {xyz: [0, 0, 0.005], frame: nest}" in after
     assert "detect: {labels: {sheet: steel plate, box/screw: screw}, frame: nest}" in after
     assert "  box: {module: bin, connector: port}" in after
+
+
+def test_renaming_follows_what_is_joined_and_what_is_joined_is_not_removed() -> None:
+    text = CELL + "bonds: {pad: {kind: glue, part: plate, to: table}, tab: {kind: clip, part: bin/screw, to: plate}}\n"
+    after = edited(
+        RenameCellItem(section="parts", name="plate", new_name="sheet"),
+        RenameCellItem(section="fixtures", name="table", new_name="bench_top"),
+        RenameCellItem(section="modules", name="bin", new_name="box"),
+        text=text,
+    )
+    bonds = "{pad: {kind: glue, part: sheet, to: bench_top}, tab: {kind: clip, part: box/screw, to: sheet}}"
+    assert after.endswith(f"bonds: {bonds}\n")
+    said = apply_cell_edits(text, [RemoveCellItem(section="parts", name="plate")], file="cell.yaml")[1]
+    assert said is not None
+    assert "it is named by `above`, `pad`, `tab`" in said.message
 
 
 def test_an_item_that_is_named_elsewhere_is_not_removed() -> None:

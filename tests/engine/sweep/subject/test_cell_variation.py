@@ -44,6 +44,47 @@ def test_a_part_without_a_written_pose_is_displaced_from_its_default(cell: Cell)
     assert varied.document.parts["nut"].at.rpy == (0.0, 0.0, math.pi)
 
 
+BONDS = """
+bonds:
+  seam: {kind: glue, part: nut, to: bolt}
+  base: {kind: clip, part: ring, to: disc}
+  rest: {kind: clip, part: disc, to: pad}
+"""
+RINGS = """\
+  ring: {shape: sphere, size_m: [0.01], mass_kg: 0.1, at: {xyz: [1, 1, 1]}}
+  disc: {shape: sphere, size_m: [0.01], mass_kg: 0.1, at: {xyz: [1, 1, 2]}}
+fixtures:
+"""
+
+
+@pytest.fixture
+def joined(tmp_path: Path) -> Cell:
+    file = tmp_path / "cell.yaml"
+    file.write_text(CELL.replace("fixtures:\n", RINGS) + BONDS, encoding="utf-8")
+    return load_cell(file)
+
+
+def test_what_is_joined_to_a_displaced_part_is_displaced_and_turned_with_it(joined: Cell) -> None:
+    """The bolt is at (0.1, 0.2, 0.3) and the nut at the origin: they turn about the bolt by a quarter."""
+    parts = varied_cell(joined, {"displace.bolt.x_m": 0.5, "displace.bolt.yaw_rad": math.pi / 2}).document.parts
+    assert parts["bolt"].at.xyz == pytest.approx((0.6, 0.2, 0.3))
+    assert parts["nut"].at.xyz == pytest.approx((0.6 + 0.2, 0.2 - 0.1, 0.0))
+    assert parts["nut"].at.rpy == pytest.approx((0.0, 0.0, math.pi / 2))
+    assert parts["ring"] == joined.document.parts["ring"]
+
+
+@pytest.mark.parametrize(
+    ("displaced", "message"),
+    [
+        (("ring",), "`ring` is joined to the fixture `pad`"),
+        (("nut", "bolt"), "`bolt` and `nut` are joined and are displaced as one"),
+    ],
+)
+def test_what_cannot_be_displaced_as_one_is_refused(joined: Cell, displaced: tuple[str, ...], message: str) -> None:
+    with pytest.raises(DocumentError, match=message):
+        varied_cell(joined, {f"displace.{name}.x_m": 0.01 for name in displaced})
+
+
 def test_any_value_of_the_document_can_be_varied(cell: Cell) -> None:
     values = {
         "cell.parts.bolt.mass_kg": 1.5,

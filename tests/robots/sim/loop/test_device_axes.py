@@ -31,8 +31,10 @@ devices:
   vice:
     axes:
       main:
-        {body: jaw, along: [1, 0, 0], stroke: 0.06, force: 60, speed: 0.05, friction: 0.4, against: [fixed], output: on}
-      table: {body: turntable, joint: hinge, along: [0, 0, 1], stroke: 1.5708, force: 2, speed: 1, output: on}
+        {body: jaw, joint: slide, along: [1, 0, 0], stroke_m: 0.06, force_n: 60, speed_m_s: 0.05, friction: 0.4,
+         against: [fixed], output: on}
+      table:
+        {body: turntable, joint: hinge, along: [0, 0, 1], stroke_rad: 1.5708, torque_nm: 2, speed_rad_s: 1, output: on}
     positions:
       closed: {steps: [{set: {on: true}}], time: 2}
 """

@@ -22,7 +22,7 @@ devices:
   clamp_jaw:
     equipment: vice
     axes:
-      main: {body: jaw, along: [1, 0, 0], stroke: 0.05, force: 60, speed: 0.05, output: valve}
+      main: {body: jaw, joint: slide, along: [1, 0, 0], stroke_m: 0.05, force_n: 60, speed_m_s: 0.05, output: valve}
     sensors:
       there: {axis: main, at_least: 0.02}
     positions:
