@@ -9,7 +9,7 @@ from engine.errors import Cause
 from engine.skills.arm_target import StoredTargets, ToolChange
 from engine.skills.motion import CartLinTask, Speed
 from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
-from engine.skills.planning_scene import TouchingPair
+from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.skills.tool_changer import DescribeTool, LockTool, LockToolResult, ReadToolChanger, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.tool_parameter_types import ChangeableToolName, FirstToolPointName, ToolChangerName
@@ -112,7 +112,8 @@ class TakeTool(State, frozen=True, kw_only=True):
         return reached if isinstance(reached, SequenceEnd) else None
 
     def _may_touch(self, pair: TouchingPair) -> bool:
-        return self.tool in (pair.first, pair.second)
+        """Return whether a pair is the tool and the face that meets it, at most `CONTACT_M` deep."""
+        return self.tool in (pair.first, pair.second) and pair.depth_m <= CONTACT_M
 
     async def _lock(self, ctx: Context) -> SequenceEnd | None:
         goal = LockTool(tool=self.tool, tcp=self.tcp)
