@@ -60,8 +60,9 @@ class Physics:
         self.geom_rotations: Array = self._data.geom_xmat
         self.geom_radii: Array = model.geom_rbound.copy()
         self._probe: Any = None
-        # The rows of the constraints of bonds; they change where a bond begins or ends to act.
-        self._bond_rows: list[tuple[int, int]] | None = None
+        # The rows of the constraints of bonds, and the numbers of all constraints for which they hold.
+        self._bond_rows: list[tuple[int, int]] = []
+        self._bond_rows_of = b""
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -108,16 +109,17 @@ class Physics:
     def set_bond(self, bond: int, *, joined: bool) -> None:
         """Let the constraint of a bond act, or not, from the next step on; it is part of the state."""
         self._data.eq_active[bond] = joined
-        self._bond_rows = None
 
     def bond_loads(self, bonds: NDArray[np.intp]) -> list[tuple[float, float]]:
         """Return the force in N and the torque in N m, about its place, that each bond carried in the last step."""
         data = self._data
         count = int(data.ne)
-        if self._bond_rows is None:
-            numbers = data.efc_id[:count]
+        numbers = data.efc_id[:count]
+        key = numbers.tobytes()
+        if key != self._bond_rows_of:
             first = np.searchsorted(numbers, bonds).tolist()
             self._bond_rows = list(zip(first, np.searchsorted(numbers, bonds, side="right").tolist(), strict=True))
+            self._bond_rows_of = key
         loads: list[float] = data.efc_force[:count].tolist()
         # The rows of a weld's rotation are those of a quaternion, of half the angle.
         return [
