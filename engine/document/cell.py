@@ -47,6 +47,7 @@ from engine.document.robot_spec import RobotSpec, require_driver_kind
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
 from engine.document.text.yaml_source import DataPath, DocumentSource, load_source
+from engine.document.topic_rules import RESERVED_NAMESPACES, require_topics
 from engine.errors import DocumentError
 from engine.messages import Pose
 
@@ -264,7 +265,7 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     _require_unknown_bodies(document, source)
     _require_regions(document, source)
     require_detection_frames(document.cameras, document.frames, source)
-    _require_topics(document, source)
+    require_topics(document.topics, source, owners={**on_bus, **dict.fromkeys(document.equipment, "equipment")})
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
     uses = document.uses_of_frames()
@@ -396,28 +397,9 @@ def _require_regions(document: CellDocument, source: DocumentSource) -> None:
         )
 
 
-_RESERVED_TOPICS = frozenset(("cell", "people", "store", "teach", "world"))
-
-
 def _namespaces(document: CellDocument) -> dict[str, str]:
     """Return what has each namespace on the bus, without equipment."""
     found = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
-    return found | dict.fromkeys(document.people, "person") | dict.fromkeys(_RESERVED_TOPICS, "name of flexcell itself")
-
-
-def _require_topics(document: CellDocument, source: DocumentSource) -> None:
-    devices = {**dict.fromkeys(document.robots, "robot"), **dict.fromkeys(document.cameras, "camera")}
-    devices |= dict.fromkeys(document.equipment, "equipment")
-    for name, spec in document.topics.items():
-        first = name.partition("/")[0]
-        path: DataPath = ("topics", name)
-        if first in devices or first in _RESERVED_TOPICS:
-            owner = f"{devices[first]} `{first}`" if first in devices else "flexcell"
-            raise DocumentError(
-                f"the topics below `{first}` are those of {owner}",
-                where=source.position(path, of_key=True),
-                hint="name it after who publishes it: operator/key, line/part_ready",
-            )
-        problem = spec.problem(spec.default) if not spec.required else None
-        if problem is not None:
-            raise DocumentError(f"the default of topic `{name}`: {problem}", where=source.position((*path, "default")))
+    return (
+        found | dict.fromkeys(document.people, "person") | dict.fromkeys(RESERVED_NAMESPACES, "name of flexcell itself")
+    )

@@ -47,7 +47,7 @@ def guide_equipment(host: str, port: int, *, name: str, timeout_s: float) -> Non
 
 
 @dataclass
-class Said(Message):
+class RequestEnded(Message):
     """What a request has brought, for the line below the document; with `text` the document is replaced."""
 
     words: str
@@ -104,7 +104,7 @@ class EquipmentGuide(App[None]):
             with Vertical():
                 yield TextArea("", id="document", show_line_numbers=True, tab_behavior="indent")
                 yield Label("", id="valid", markup=False)
-                yield Label("", id="said", markup=False)
+                yield Label("", id="result", markup=False)
                 with Horizontal(id="buttons"):
                     yield Button("Read", id="read")
                     yield Button("Template", id="template")
@@ -132,7 +132,7 @@ class EquipmentGuide(App[None]):
     def action_read(self) -> None:
         """Read the configuration in effect; what was edited is replaced."""
 
-        def ask(client: EquipmentClient) -> Said:
+        def ask(client: EquipmentClient) -> RequestEnded:
             return _in_effect(client.configuration())
 
         self._request("read", ask)
@@ -140,8 +140,8 @@ class EquipmentGuide(App[None]):
     def action_template(self) -> None:
         """Show a commented example for the hardware of the server."""
 
-        def ask(client: EquipmentClient) -> Said:
-            return Said("a template; nothing is changed before it is set", text=client.template().text)
+        def ask(client: EquipmentClient) -> RequestEnded:
+            return RequestEnded("a template; nothing is changed before it is set", text=client.template().text)
 
         self._request("read the template", ask)
 
@@ -153,14 +153,14 @@ class EquipmentGuide(App[None]):
         """Replace the configuration; outputs go to their safe values."""
         problem = self._problem()
         if problem:
-            self.on_said(Said(f"not set: {problem}"))
+            self.on_request_ended(RequestEnded(f"not set: {problem}"))
             return
         text, base = self._text, self._digest
 
-        def ask(client: EquipmentClient) -> Said:
+        def ask(client: EquipmentClient) -> RequestEnded:
             done = client.configure(text, base=base)
             digest = client.configuration().digest
-            return Said(f"{done}, digest {digest[:12]}", digest=digest)
+            return RequestEnded(f"{done}, digest {digest[:12]}", digest=digest)
 
         self._request("set", ask)
 
@@ -168,17 +168,17 @@ class EquipmentGuide(App[None]):
         """Take back the last change; outputs go to their safe values."""
         base = self._digest
 
-        def ask(client: EquipmentClient) -> Said:
+        def ask(client: EquipmentClient) -> RequestEnded:
             done = client.roll_back(base=base)
             return _in_effect(client.configuration(), after=f"{done}; ")
 
         self._request("roll back", ask)
 
-    def on_said(self, message: Said) -> None:
+    def on_request_ended(self, message: RequestEnded) -> None:
         """Show what a request has brought; it may end after the page has been left."""
         if not self.screen_stack:
             return
-        self._page.query_one("#said", Label).update(message.words)
+        self._page.query_one("#result", Label).update(message.words)
         if message.digest is not None:
             self._digest = message.digest
         if message.text is not None:
@@ -228,12 +228,12 @@ class EquipmentGuide(App[None]):
         self._page.query_one("#document", TextArea).load_text(text)
 
     @work(thread=True, group="request")
-    def _request(self, what: str, ask: Callable[[EquipmentClient], Said]) -> None:
+    def _request(self, what: str, ask: Callable[[EquipmentClient], RequestEnded]) -> None:
         try:
             with self._connect() as client:
                 self.post_message(ask(client))
         except FlexcellError as error:
-            self.post_message(Said(f"did not {what}: {error}"))
+            self.post_message(RequestEnded(f"did not {what}: {error}"))
 
     @work(thread=True, group="pins", exclusive=True)
     def _read_pins(self) -> None:
@@ -244,9 +244,9 @@ class EquipmentGuide(App[None]):
             self.post_message(PinsRead(None, problem=str(error)))
 
 
-def _in_effect(read: ConfigurationText, *, after: str = "") -> Said:
+def _in_effect(read: ConfigurationText, *, after: str = "") -> RequestEnded:
     kept = f", {len(read.kept)} earlier kept, the last of {read.kept[-1]}" if read.kept else ""
-    return Said(f"{after}in effect, digest {read.digest[:12]}{kept}", text=read.text, digest=read.digest)
+    return RequestEnded(f"{after}in effect, digest {read.digest[:12]}{kept}", text=read.text, digest=read.digest)
 
 
 def _words(value: float) -> str:

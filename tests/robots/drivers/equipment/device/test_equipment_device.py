@@ -239,7 +239,7 @@ async def test_an_engine_that_hangs_lets_outputs_go(tmp_path: Path) -> None:
             await until(lambda: outputs(cell.bus) == {"clamp": True, "valve": False})
 
 
-async def test_a_server_that_is_not_there_is_said_once_with_what_to_do(tmp_path: Path) -> None:
+async def test_a_server_that_is_not_there_has_its_remedy_once(tmp_path: Path) -> None:
     host = own_address()
     file = written(tmp_path, host=host, port=1)
     with pytest.raises(RobotError, match=f"equipment does not answer: {host}:1: cannot connect") as refused:

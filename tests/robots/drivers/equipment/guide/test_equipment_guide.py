@@ -9,7 +9,7 @@ from typing import cast
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import DataTable, Input, Label, TextArea
+from textual.widgets import Button, DataTable, Input, Label, TextArea
 
 from engine.errors import RobotError
 from robots.drivers.equipment.guide import EquipmentGuide, guide_equipment
@@ -29,7 +29,7 @@ def guide(server: ServedEquipment) -> EquipmentGuide:
     )
 
 
-def said(app: EquipmentGuide, label: str = "said") -> str:
+def label_of(app: EquipmentGuide, label: str = "result") -> str:
     """Return what a label says."""
     return "".join(str(each.content) for each in app.screen_stack[0].query(f"#{label}").results(Label))
 
@@ -54,6 +54,12 @@ async def until(pilot: Pilot[None], condition: Callable[[], bool]) -> None:
             await pilot.pause(0.02)
 
 
+async def press(pilot: Pilot[None], app: EquipmentGuide, button: str) -> None:
+    """Press a button of the page or of the form on it, once it is there."""
+    await until(pilot, lambda: bool(app.screen.query(f"#{button}")))
+    app.screen.query_one(f"#{button}", Button).press()
+
+
 async def test_a_pin_is_added_set_and_taken_back(tmp_path: Path) -> None:
     file = tmp_path / "clamps.yaml"
     file.write_text(SIMULATED, encoding="utf-8")
@@ -62,28 +68,28 @@ async def test_a_pin_is_added_set_and_taken_back(tmp_path: Path) -> None:
         async with app.run_test(size=SIZE) as pilot:
             await until(pilot, lambda: pins(app) == {"clamp": "on", "valve": "off", "there": "off"})
             await until(pilot, lambda: document(app) == SIMULATED)
-            await until(pilot, lambda: said(app).startswith("in effect, digest "))
-            await pilot.click("#add_pin")
+            await until(pilot, lambda: label_of(app).startswith("in effect, digest "))
+            await press(pilot, app, "add_pin")
             await until(pilot, lambda: bool(app.screen.query("#name")))
             app.screen.query_one("#name", Input).value = "light"
-            await pilot.click("#add")
+            await press(pilot, app, "add")
             problem = app.screen.query_one("#problem", Label)
             await until(pilot, lambda: str(problem.content) == "give a name and a number")
             app.screen.query_one("#pin", Input).value = "5"
-            await pilot.click("#add")
+            await press(pilot, app, "add")
             await until(pilot, lambda: "  light: {kind: digital_output, pin: 5, safe: false}\n" in document(app))
-            await until(pilot, lambda: said(app, "valid") == "valid")
+            await until(pilot, lambda: label_of(app, "valid") == "valid")
             assert file.read_text(encoding="utf-8") == SIMULATED
-            await pilot.click("#set")
+            await press(pilot, app, "set")
             await until(pilot, lambda: pins(app).get("light") == "off")
             assert "light" in file.read_text(encoding="utf-8")
-            await pilot.click("#roll_back")
+            await press(pilot, app, "roll_back")
             await until(pilot, lambda: "light" not in pins(app))
             await until(pilot, lambda: "light" not in document(app))
             assert file.read_text(encoding="utf-8") == SIMULATED
 
 
-async def test_what_is_not_valid_is_not_sent_and_its_place_is_told(tmp_path: Path) -> None:
+async def test_what_is_not_valid_is_not_sent_and_its_place_is_shown(tmp_path: Path) -> None:
     file = tmp_path / "clamps.yaml"
     file.write_text(SIMULATED, encoding="utf-8")
     with served_equipment(file) as server:
@@ -91,9 +97,9 @@ async def test_what_is_not_valid_is_not_sent_and_its_place_is_told(tmp_path: Pat
         async with app.run_test(size=SIZE) as pilot:
             await until(pilot, lambda: document(app) == SIMULATED)
             app.query_one("#document", TextArea).load_text(SIMULATED.replace("safe: true", "safe: maybe"))
-            await until(pilot, lambda: said(app, "valid").startswith("not valid: configuration:6:"))
+            await until(pilot, lambda: label_of(app, "valid").startswith("not valid: configuration:6:"))
             await pilot.press("ctrl+s")
-            await until(pilot, lambda: said(app).startswith("not set: configuration:6:"))
+            await until(pilot, lambda: label_of(app).startswith("not set: configuration:6:"))
             assert file.read_text(encoding="utf-8") == SIMULATED
 
 
@@ -111,7 +117,7 @@ async def test_a_change_of_somebody_else_and_a_client_that_controls_refuse_it(tm
                 other.configure(SIMULATED + "  horn: {kind: digital_output, pin: 9, safe: false}\n", base=base)
             app.query_one("#document", TextArea).load_text(edited)
             await pilot.press("ctrl+s")
-            await until(pilot, lambda: said(app).startswith("did not set: "))
+            await until(pilot, lambda: label_of(app).startswith("did not set: "))
             assert document(app) == edited
             await pilot.press("ctrl+r")
             await until(pilot, lambda: "horn" in document(app))
@@ -121,11 +127,11 @@ async def test_a_change_of_somebody_else_and_a_client_that_controls_refuse_it(tm
                 await until(pilot, lambda: "horn" in document(app))
                 app.query_one("#document", TextArea).load_text(edited)
                 await pilot.press("ctrl+s")
-                await until(pilot, lambda: said(app).startswith("did not set: "))
-                assert "doomed" in said(app)
+                await until(pilot, lambda: label_of(app).startswith("did not set: "))
+                assert "doomed" in label_of(app)
 
 
-async def test_a_server_that_ends_is_said_and_the_text_is_kept(tmp_path: Path) -> None:
+async def test_a_server_that_ends_is_shown_and_the_text_is_kept(tmp_path: Path) -> None:
     file = tmp_path / "clamps.yaml"
     file.write_text(SIMULATED, encoding="utf-8")
     with served_equipment(file) as server:
