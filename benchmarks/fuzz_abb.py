@@ -89,7 +89,7 @@ def egm() -> FuzzTarget:
     valid = tuple(encode_set_point(EgmSetPoint(number=n, time_ms=4 * n, planned_deg=_ANGLES)) for n in (1, 2**31))
 
     def feed(packet: bytes) -> str:
-        source.datagram_received(packet, ("127.0.0.1", 6510))
+        source.take(packet)
         return "ignored"
 
     return FuzzTarget("egm", "to the device", valid, feed, lambda: source.heard > 0 or controller.travel_rad > 0.0)

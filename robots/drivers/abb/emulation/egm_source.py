@@ -137,9 +137,9 @@ class EgmSource:
             while self._socket is not None:
                 # An answer to a port that was closed is an error of the next call: the controller sends on.
                 with suppress(ConnectionRefusedError):
-                    self._take(self._socket.recv(_MOST_BYTES + 1))
+                    self.take(self._socket.recv(_MOST_BYTES + 1))
 
-    def _take(self, data: bytes) -> None:
+    def take(self, data: bytes) -> None:
         """Take a set point; anything else is ignored."""
         if self._is_cut or self.own_faults.deaf or len(data) > _MOST_BYTES:
             return
