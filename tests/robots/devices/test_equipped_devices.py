@@ -13,9 +13,10 @@ from engine.bus import GoalStatus, Holder, SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses
-from engine.skills.device_moves import DeviceFault, DeviceReading, DeviceResult, MoveDevice, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, MoveDevice, SimulateDeviceFault
 from engine.skills.digital_inputs import DigitalInputs, SimulateInput
 from engine.skills.digital_outputs import DigitalOutputs, SetOutput
+from tests.robots.devices.moved_device import move, state
 
 PINS = """\
 flexcell: 1
@@ -65,21 +66,6 @@ async def opened(folder: Path, text: str) -> AsyncGenerator[OpenCell]:
     (folder / "cell.yaml").write_text(text, encoding="utf-8")
     async with OpenCell(load_cell(folder / "cell.yaml")) as cell:
         yield cell
-
-
-async def move(bus: SkillBus, device: str, position: str) -> DeviceResult:
-    """Move a device and return how that ended."""
-    end = await bus.send_goal(MoveDevice(position=position), to=device).result()
-    assert (end.status, end.cause) == (GoalStatus.SUCCEEDED, None)
-    assert end.result is not None
-    return end.result
-
-
-def state(bus: SkillBus, device: str) -> DeviceReading:
-    """Return what is known of a device."""
-    found = bus.topic(f"{device}/state", DeviceReading).latest
-    assert found is not None
-    return found
 
 
 def pins(bus: SkillBus) -> dict[str, bool]:

@@ -9,13 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from engine.bus import GoalStatus, SkillBus
+from engine.bus import GoalStatus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses
-from engine.skills.device_moves import DeviceFault, DeviceReading, DeviceResult, MoveDevice, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, MoveDevice, SimulateDeviceFault
 from engine.skills.modules import PlugModule
 from engine.skills.planning_scene import ReadPlanningScene
+from tests.robots.devices.moved_device import move, state
 
 CELL = """\
 flexcell: 1
@@ -57,21 +58,6 @@ async def opened(folder: Path) -> AsyncGenerator[OpenCell]:
     (folder / "cell.yaml").write_text(CELL, encoding="utf-8")
     async with OpenCell(load_cell(folder / "cell.yaml")) as cell:
         yield cell
-
-
-async def move(bus: SkillBus, device: str, position: str) -> DeviceResult:
-    """Move a device and return how that ended."""
-    end = await bus.send_goal(MoveDevice(position=position), to=device).result()
-    assert (end.status, end.cause) == (GoalStatus.SUCCEEDED, None)
-    assert end.result is not None
-    return end.result
-
-
-def state(bus: SkillBus, device: str) -> DeviceReading:
-    """Return what is known of a device."""
-    found = bus.topic(f"{device}/state", DeviceReading).latest
-    assert found is not None
-    return found
 
 
 async def test_a_slide_is_where_its_end_switch_tells(tmp_path: Path) -> None:

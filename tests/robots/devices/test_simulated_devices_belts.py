@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from engine.bus import GoalStatus, SkillBus
+from engine.bus import SkillBus
 from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import PartPoses
-from engine.skills.device_moves import DeviceFault, DeviceReading, DeviceResult, MoveDevice, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
+from tests.robots.devices.moved_device import move, state
 
 MODULES = Path(__file__).parents[3] / "behaviors" / "modules"
 CELL = f"""\
@@ -37,14 +38,6 @@ async def opened(folder: Path) -> AsyncGenerator[OpenCell]:
         yield cell
 
 
-async def move(bus: SkillBus, position: str) -> DeviceResult:
-    """Move the conveyor to a position and return how that ended."""
-    end = await bus.send_goal(MoveDevice(position=position), to=DEVICE).result()
-    assert (end.status, end.cause) == (GoalStatus.SUCCEEDED, None)
-    assert end.result is not None
-    return end.result
-
-
 def crate_along_m(bus: SkillBus) -> float:
     """Return how far the crate has come."""
     parts = bus.topic("cell/parts", PartPoses).latest
@@ -52,26 +45,19 @@ def crate_along_m(bus: SkillBus) -> float:
     return 0.75 - parts.poses["crate"].xyz[0]
 
 
-def reading(bus: SkillBus) -> DeviceReading:
-    """Return what is known of the conveyor."""
-    found = bus.topic(f"{DEVICE}/state", DeviceReading).latest
-    assert found is not None
-    return found
-
-
 async def test_a_part_is_brought_to_the_light_barrier_and_stops_there(tmp_path: Path) -> None:
     """The barrier is 0.5 m from the start, and the crate 0.05 m long; it stops within 0.025 m."""
     async with opened(tmp_path) as cell:
         bus = cell.bus
-        assert (crate_along_m(bus), reading(bus).sensors) == (pytest.approx(0.0, abs=1e-6), {"at_end": False})
-        assert (await move(bus, "part_at_end")).ended == "reached"
-        assert (reading(bus).sensors, reading(bus).outputs) == ({"at_end": True}, {"belt_run": False})
+        assert (crate_along_m(bus), state(bus, DEVICE).sensors) == (pytest.approx(0.0, abs=1e-6), {"at_end": False})
+        assert (await move(bus, DEVICE, "part_at_end")).ended == "reached"
+        assert (state(bus, DEVICE).sensors, state(bus, DEVICE).outputs) == ({"at_end": True}, {"belt_run": False})
         await bus.clock.sleep(0.5)
         resting = crate_along_m(bus)
         assert 0.475 < resting < 0.5
         await bus.clock.sleep(1.0)
         assert crate_along_m(bus) == pytest.approx(resting, abs=5e-4)
-        assert (await move(bus, "part_at_end")).ended == "reached"
+        assert (await move(bus, DEVICE, "part_at_end")).ended == "reached"
         assert crate_along_m(bus) == pytest.approx(resting, abs=0.01)
 
 
@@ -79,16 +65,16 @@ async def test_a_part_is_brought_to_the_light_barrier_and_stops_there(tmp_path: 
 async def test_a_belt_that_does_not_run_brings_nothing_and_is_stuck(tmp_path: Path, fault: DeviceFault) -> None:
     async with opened(tmp_path) as cell:
         assert (await cell.bus.call(SimulateDeviceFault(fault=fault), to=DEVICE)).success
-        result = await move(cell.bus, "part_at_end")
+        result = await move(cell.bus, DEVICE, "part_at_end")
         assert (result.ended, "at_end is off after 8 s" in result.reason) == ("stuck", True), result.reason
         assert crate_along_m(cell.bus) == pytest.approx(0.0, abs=1e-3)
 
 
 async def test_it_runs_and_stops_by_time(tmp_path: Path) -> None:
     async with opened(tmp_path) as cell:
-        assert (await move(cell.bus, "running")).ended == "timed"
+        assert (await move(cell.bus, DEVICE, "running")).ended == "timed"
         await cell.bus.clock.sleep(1.0)
-        assert (await move(cell.bus, "stopped")).ended == "timed"
+        assert (await move(cell.bus, DEVICE, "stopped")).ended == "timed"
         resting = crate_along_m(cell.bus)
         assert 0.12 < resting < 0.19
         await cell.bus.clock.sleep(1.0)
