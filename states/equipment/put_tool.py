@@ -9,7 +9,6 @@ from engine.errors import Cause
 from engine.skills.arm_target import StoredTargets, ToolChange
 from engine.skills.motion import CartLinTask, Speed
 from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
-from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.skills.tool_changer import DescribeTool, ReadToolChanger, ReleaseTool, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.check_tool import CheckTool
@@ -95,13 +94,8 @@ class PutTool(State, frozen=True, kw_only=True):
             line_speed_m_s=self.line_speed_m_s,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
-            expected=self._is_hanger_contact,
             kind=self.state_name,
         )
-
-    def _is_hanger_contact(self, pair: TouchingPair) -> bool:
-        """Return whether a pair is the tool and what it hangs in, at most `CONTACT_M` deep."""
-        return self.tool in (pair.first, pair.second) and pair.depth_m <= CONTACT_M
 
     async def _release(self, ctx: Context) -> SequenceEnd | None:
         goal = ReleaseTool()

@@ -9,7 +9,6 @@ from engine.errors import Cause
 from engine.skills.arm_target import StoredTargets, ToolChange
 from engine.skills.motion import CartLinTask, Speed
 from engine.skills.planning import BlockedPathTimeout, Margin, MoveFree
-from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.skills.tool_changer import DescribeTool, LockTool, LockToolResult, ReadToolChanger, ToolDescription
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.tool_parameter_types import ChangeableToolName, FirstToolPointName, ToolChangerName
@@ -96,7 +95,6 @@ class TakeTool(State, frozen=True, kw_only=True):
             line_speed_m_s=self.line_speed_m_s,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
-            expected=self._may_touch,
             kind=self.state_name,
         )
 
@@ -110,10 +108,6 @@ class TakeTool(State, frozen=True, kw_only=True):
             return ended
         reached = await approach.to(ctx, [description.docked])
         return reached if isinstance(reached, SequenceEnd) else None
-
-    def _may_touch(self, pair: TouchingPair) -> bool:
-        """Return whether a pair is the tool and the face that meets it, at most `CONTACT_M` deep."""
-        return self.tool in (pair.first, pair.second) and pair.depth_m <= CONTACT_M
 
     async def _lock(self, ctx: Context) -> SequenceEnd | None:
         goal = LockTool(tool=self.tool, tcp=self.tcp)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from engine.errors import Cause
 from engine.messages import PartPoses, Pose, Vector3
 from engine.messages.pose_algebra import compose_poses
 from engine.skills.motion import ForwardKinematics, Speed
 from engine.skills.planning import BlockedPathTimeout, Margin
-from engine.skills.planning_scene import TouchingPair
+from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.skills.tool_changer import ReadToolChanger, ToolDescription
 from engine.state import Context
 from states.frames import PARTS_TOPIC
@@ -43,10 +42,16 @@ def tool_approach(
     line_speed_m_s: float,
     margin_m: Margin,
     patience_s: BlockedPathTimeout,
-    expected: Callable[[TouchingPair], bool],
     kind: str,
 ) -> Approach:
-    """Return the approach to the place of a tool, which is left in the same direction."""
+    """Return the approach to the place of a tool, which is left in the same direction.
+
+    The tool may touch the face, and what it hangs in, at most `CONTACT_M` deep.
+    """
+
+    def expected(pair: TouchingPair) -> bool:
+        return tool in (pair.first, pair.second) and pair.depth_m <= CONTACT_M
+
     return Approach(
         robot=robot,
         out_m=out_m,
