@@ -15,7 +15,7 @@ from engine.document import Cell
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
-from engine.skills.device_moves import DeviceFault, DeviceReading, SimulateDeviceFault
+from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer, known_at
 from robots.devices.hexapod_server import HexapodServer
@@ -99,9 +99,6 @@ class SimulatedDevices:
         for name, device in self._devices.items():
             if device.equipment is None or self._cell.equipment[device.equipment].simulated:
                 bus.advertise_service(SimulateDeviceFault, self._fault_service(name), namespace=name)
-            if device.equipment is not None:
-                # While it is moved it publishes its state, and at rest its last one.
-                bus.topic(f"{name}/state", DeviceReading).subscribe(lambda _state: self._publish_poses())
         for follower in self._pin_followers:
             follower.start(bus)
 
@@ -164,8 +161,8 @@ class SimulatedDevices:
 
     async def __aenter__(self) -> Self:
         self._drive()
-        if self._hexapods:
-            self._following = asyncio.create_task(self._follow(), name="following the platforms of hexapods")
+        if self._hexapods or self._pin_followers:
+            self._following = asyncio.create_task(self._follow(), name="following moved fixtures")
         self.status = DeviceStatus.READY
         return self
 
@@ -193,7 +190,7 @@ class SimulatedDevices:
         self._publish_poses()
 
     async def _follow(self) -> None:
-        """Tell where platforms are that somebody moves."""
+        """Tell where platforms are that somebody moves, and axes whose pins somebody sets."""
         while True:
             await self._clock.sleep(_FOLLOW_S)
             if not self._world.lost_reason:
@@ -222,11 +219,11 @@ class SimulatedDevices:
             for word, known in ((fault.stuck, moving), (fault.sensor, device.sensors)):
                 if word and word not in known:
                     return SwitchResult(success=False, message=f"{name} has no {word}: it has {', '.join(known)}")
+            if not fault.brakes and device.hexapod is None:
+                return SwitchResult(success=False, message=f"{name} has no hexapod, and so no brakes")
             port.air, port.power = fault.air, fault.power
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}
-            if not fault.brakes and device.hexapod is None:
-                return SwitchResult(success=False, message=f"{name} has no hexapod, and so no brakes")
             port.slipping = not fault.brakes
             port.drive()
             if name in self._servers:

@@ -16,6 +16,7 @@ from engine.messages import FramePoses
 from engine.skills.device_moves import DeviceFault, MoveDevice, SimulateDeviceFault
 from engine.skills.digital_inputs import DigitalInputs, SimulateInput
 from engine.skills.digital_outputs import DigitalOutputs, SetOutput
+from engine.skills.planning_scene import ReadPlanningScene
 from tests.robots.devices.moved_device import move, state
 
 PINS = """\
@@ -146,6 +147,23 @@ async def test_an_output_that_is_set_by_hand_moves_the_axis_too(tmp_path: Path) 
         assert carriage_y(bus) == pytest.approx(0.2, abs=0.004)
         assert pins(bus)["at_back"]
         assert (state(bus, "slide").commanded, state(bus, "slide").sensed) == ("", "back")
+
+
+async def test_the_planning_scene_follows_an_output_that_is_set_by_hand(tmp_path: Path) -> None:
+    async with opened(tmp_path, IN_WORLD) as cell:
+        await cell.bus.call(ReadPlanningScene(), to="cell")
+        assert (await cell.bus.call(SetOutput(name="go", value=True), to="valves")).success
+        await cell.bus.clock.sleep(2.0)
+        scene = await cell.bus.call(ReadPlanningScene(), to="cell")
+        carriage = next(each for each in scene.obstacles if each.name == "carriage")
+        assert carriage.pose.xyz[1] == pytest.approx(0.2, abs=0.004)
+
+
+async def test_a_fault_that_is_refused_breaks_nothing(tmp_path: Path) -> None:
+    async with opened(tmp_path, IN_WORLD) as cell:
+        broken = SimulateDeviceFault(fault=DeviceFault(stuck="travel", brakes=False))
+        assert not (await cell.bus.call(broken, to="slide")).success
+        assert (await move(cell.bus, "slide", "back")).ended == "reached"
 
 
 async def test_a_stop_makes_pins_safe_and_what_they_press_follows(tmp_path: Path) -> None:
