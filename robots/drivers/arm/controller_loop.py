@@ -30,6 +30,7 @@ from robots.control.motion_event import AnyMotionEvent, MotionFinished
 from robots.drivers.arm.arm_state_layout import NO_TOOL, ArmProcessState, tool_numbers
 from robots.drivers.arm.joint_controller import ControllerLost, ControllerReading, JointController, MotionRefused
 from robots.drivers.arm.reading_check import invalid_value
+from robots.drivers.arm.sent_set_point import SentSetPoint
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
@@ -43,8 +44,6 @@ _MOVED_RAD = 1e-4
 # A brake that is released lets an arm sag a little.
 _ENABLED_NEAR_RAD = 0.1
 _ENABLED_READINGS = 5
-# A set point may be this much farther than the joint can go until then: rounding, not a jump.
-_NEXT_SET_POINT_RAD, _NEXT_SET_POINT_SHARE = 2e-3, 1.1
 NOT_ENABLED = "motion is not enabled"
 _INVALID_HINT = "check the versions of controller and client library; only reading is restored by itself"
 ENABLE_HINT = "look at the arm, then permit motion: `flexcell run --enable REASON`, or the skill enable_device"
@@ -110,8 +109,7 @@ class ControllerLoop:
         self._tool = NO_TOOL
         self._unreported: list[AnyMotionEvent] = []
         self._interruption: _Interruption | None = None
-        self._fastest_rad_s = np.array(model.limits.velocity_rad_s)
-        self._sent_rad: Array | None = None
+        self._sent = SentSetPoint(model.arm_joints, model.limits.velocity_rad_s)
         self._reading: ControllerReading | None = None
         self._read_at_s = clock()
         self.readings = 0
@@ -224,22 +222,14 @@ class ControllerLoop:
 
     def _begin_at(self, position_rad: Array) -> None:
         self.control.initialize(position_rad, reflex=self.control.reflex)
-        self._sent_rad = None
+        self._sent.forget()
 
     def _command(self, step_s: float) -> None:
         """Send the set point; raises MotionRefused where no motion leads there from the last one."""
-        motion, sent_rad = self.control.motion, self._sent_rad
-        if sent_rad is not None:
-            most_rad = _NEXT_SET_POINT_SHARE * self._fastest_rad_s * step_s + _NEXT_SET_POINT_RAD
-            off_rad = np.abs(motion.position - sent_rad)
-            joint = int((off_rad - most_rad).argmax())
-            if not off_rad[joint] <= most_rad[joint]:
-                raise MotionRefused(
-                    f"the next set point of {self._joints[joint]} is {off_rad[joint]:.3g} rad away from the last",
-                    hint="it was not sent; report it with the log, look at the arm, then enable motion",
-                )
+        motion = self.control.motion
+        self._sent.require_next(motion.position, step_s=step_s)
         self._controller.command(motion.position, motion.velocity)
-        self._sent_rad = motion.position.copy()
+        self._sent.note(motion.position)
 
     def state(self) -> ArmProcessState:
         """Return the present state; something was measured."""
