@@ -248,7 +248,7 @@ class EquipmentDevice:
         try:
             pins = self._opened().fresh().pins
         except RobotError as error:
-            return PinSignals.unknown(str(error))
+            return PinSignals.unknown(f"{self._name} at {error.statement}")
         if pins.problem or not pins.values:
             return PinSignals.unknown(f"{self._name}: {pins.problem or 'the server has no values'}")
         kinds = pins.kinds
