@@ -63,9 +63,13 @@ root:
 
 def add(page: Page, kind: str, name: str, values: Mapping[str, str], choices: Mapping[str, str] | None = None) -> None:
     """Add an item from the list, give it its numbers and its name, and apply them by Enter."""
+    forms = page.locator('form[aria-label^="Change "]')
+    shown = forms.get_attribute("aria-label") if forms.count() else None
     page.get_by_role("button", name="Add", exact=True).click()
     page.get_by_role("menuitem", name=kind, exact=True).click()
-    form = page.get_by_role("form", name="Change ")
+    # The form of the item before stays until the server has answered.
+    form = page.locator(f'form[aria-label^="Change "]:not([aria-label="{shown}"])')
+    expect(form).to_be_visible()
     for label, value in (choices or {}).items():
         form.get_by_label(label).select_option(value)
     for label, value in values.items():
