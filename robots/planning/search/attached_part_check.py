@@ -3,7 +3,8 @@
 A held part may touch
 
 - what the scene allows;
-- what it touches at the start, such as the table that it is lifted from: no deeper than there, until they separate;
+- what it touches at the start, such as the table that it is lifted from: no deeper than there, until they separate.
+  Nearer than 0.1 mm counts as touching there: no measurement tells the two apart;
 - the obstacle or unheld part on which it is placed: at the end of the trajectory, where all of its points are within
   `CONTACT_M` of their final positions, and no deeper than that.
 
@@ -36,7 +37,7 @@ _STEP_M, _FINE_M = 0.005, 0.0005
 """Largest motion of a held point between two checks, and the resolution of the start of the end section."""
 _SLACK_M, _EXACT_M = 0.001, 1e-4
 """An initial contact may deepen by the first before separation, and counts as separated at that distance; the second is
-the accuracy of distances of overlapping shapes."""
+the accuracy of distances of overlapping shapes, and what is nearer at the start touches there."""
 
 
 def check_attached_parts(
@@ -89,15 +90,11 @@ class AllowedContacts:
         self._checks = checks
         self._least_m = np.full(len(checks.pairs), TOUCHING_M)
         self._placed = placed
-        self._resting = np.zeros(len(checks.pairs), dtype=np.bool_)
-        if checks.in_collision(start):
-            distances = checks.distances(start)
-            self._resting = distances < TOUCHING_M
-            # No slack beyond the allowed contact depth: it would accumulate over motions.
-            deepest = np.where(
-                distances > -CONTACT_M, np.maximum(distances - _SLACK_M, -CONTACT_M), distances - _EXACT_M
-            )
-            self._least_m[self._resting] = deepest[self._resting]
+        distances = checks.distances(start)
+        self._resting = distances < _EXACT_M
+        # No slack beyond the allowed contact depth: it would accumulate over motions.
+        deepest = np.where(distances > -CONTACT_M, np.maximum(distances - _SLACK_M, -CONTACT_M), distances - _EXACT_M)
+        self._least_m[self._resting] = deepest[self._resting]
 
     @property
     def resting(self) -> bool:

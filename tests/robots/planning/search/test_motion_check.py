@@ -165,6 +165,17 @@ def test_what_touches_at_the_start_may_be_left_and_not_be_pressed() -> None:
     assert check(DOWN, scene=scene).blocked_at_s is not None
 
 
+@pytest.mark.parametrize(("gap_m", "is_free"), [(2e-5, True), (5e-4, False)])
+def test_what_is_nearer_at_the_start_than_one_can_measure_touches_there(gap_m: float, *, is_free: bool) -> None:
+    """A tool that hangs in its place leans on a rail by a hair more when it is lifted."""
+    pressed = turned(3, -0.002)
+    deep_m = float(lowest(HOME)[2] - lowest(pressed)[2])
+    assert 6e-4 < deep_m < 1e-3
+    scene = below(HOME, deep_m=-gap_m)
+    found = check(sampled(np.array([HOME, pressed, turned(3, 0.4)])), scene=scene, contact="never")
+    assert (found.blocked_at_s is None) is is_free
+
+
 @pytest.mark.parametrize("contact", ["at_end", "ends_path", "along_path"])
 def test_what_the_cameras_see_is_never_meant(contact: ToolContact) -> None:
     found = check(WAY, contact=contact, occupancy=grid_of(np.ones((5, 5, 5)), corner_m=(0.25, 0.0, 0.5)))
