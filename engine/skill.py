@@ -103,6 +103,11 @@ class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknow
 class Service(Skill[R], Generic[R], frozen=True, kw_only=True):
     """A request with a single, immediate response."""
 
+    @property
+    def ends_run(self) -> bool:
+        """Whether the run that has the resource is ended for this request, instead of refusing it."""
+        return False
+
 
 class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
     """A goal that takes time: it is accepted or rejected, sends feedback, and can be held and cancelled."""

@@ -211,6 +211,9 @@ class SkillBus:
         if server is None:
             raise self._no_such_service(address)
         if server.commands:
+            if request.ends_run:
+                reason = f"{holder.run} called {address}, which ends the run that has {server.commands}"
+                await self.leases.claim(server.commands, holder, reason=reason)
             self._end_idle_goals(server.commands, holder)
             self.leases.refuse_foreign(server.commands, holder)
         try:

@@ -7,7 +7,7 @@ it names while its state is active.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable
 
 import msgspec
 
@@ -47,6 +47,7 @@ class LeaseTable:
         self._leased_since_s: dict[str, float] = {}
         self._branches: dict[str, list[Holder]] = {}
         self._waiting: list[tuple[str, Callable[[], None]]] = []
+        self._ends: dict[str, Callable[[str], Awaitable[None]]] = {}
 
     def acquire(self, resources: Iterable[str], holder: Holder) -> None:
         """Lease all of `resources` or none; nested leases of the same branch are counted.
@@ -76,8 +77,19 @@ class LeaseTable:
                 self._branches.pop(resource, None)
                 self._leased_since_s.pop(resource, None)
 
+    def on_claim(self, run: str, end: Callable[[str], Awaitable[None]]) -> None:
+        """Call `end` with the reason when somebody claims a resource of `run`; it returns when the run has ended."""
+        self._ends[run] = end
+
+    async def claim(self, resource: str, holder: Holder, *, reason: str) -> None:
+        """End the run that owns a resource, and wait for its end; who owns it otherwise, keeps it."""
+        owner = self.owner(resource)
+        if owner is not None and owner != holder.run and owner in self._ends:
+            await self._ends[owner](reason)
+
     def release_run(self, run: str) -> None:
         """Release all resources of a run."""
+        self._ends.pop(run, None)
         self._owners = {name: owner for name, owner in self._owners.items() if owner != run}
         kept = {name: [h for h in held if h.run != run] for name, held in self._branches.items()}
         self._branches = {name: held for name, held in kept.items() if held}

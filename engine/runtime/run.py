@@ -119,6 +119,7 @@ class Run:
         self._ended = False
         self._cancelled = False
         self._abandoned: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._at_rest = asyncio.Event()
         self._abandon_timer: asyncio.TimerHandle | None = None
         self._control = self._new_control()
         if isinstance(skills, RunAwarePort):
@@ -171,6 +172,10 @@ class Run:
                 # Longer than any container inside waits for its children.
                 abandon_after_s = self._supervision.abandon_after_s + 2.5
                 self._abandon_timer = self._task.get_loop().call_later(abandon_after_s, self._give_up)
+
+    async def _end_for(self, reason: str) -> None:
+        self.stop(reason)
+        await self._at_rest.wait()
 
     def fail(self, error: FlexcellError) -> None:
         """Stop like `stop`, and end as errored with this cause, which lies outside the behavior."""
@@ -233,10 +238,12 @@ class Run:
         Cancelling this call stops the run; CancelledError propagates after its clean-up.
         """
         self._begin()
+        self._execution.bus.leases.on_claim(self.id, self._end_for)
         before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
         scope = self._execution.scopes.open("", {**before, **self._inputs}, self._parameters)
         status, left, cause = await self._perform(scope)
         await self._release()
+        self._at_rest.set()
         outcome = (left.target or left.outcome) if left is not None else None
         success = outcome in self.plan.success
         if left is not None and not success:

@@ -39,4 +39,14 @@ class PlugModule(Service[ModuleState], frozen=True, kw_only=True):
 
 
 class UnplugModule(Service[ModuleState], frozen=True, kw_only=True):
-    """Unplug a module: it leaves with its parts that are on it; those that are elsewhere stay in the cell."""
+    """Unplug a module: it leaves with its parts that are on it; those that are elsewhere stay in the cell.
+
+    A run that has the module refuses it or, with `end_run`, is stopped first.
+    """
+
+    end_run: bool = False
+
+    @property
+    def ends_run(self) -> bool:
+        """Whether the run that has the module is stopped first."""
+        return self.end_run

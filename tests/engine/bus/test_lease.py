@@ -24,7 +24,20 @@ class Change(Service[Number], frozen=True, kw_only=True):
     """A service that commands an arm."""
 
 
+class Take(Service[Number], frozen=True, kw_only=True):
+    """A service for which the run that has the arm ends."""
+
+    @property
+    def ends_run(self) -> bool:
+        return True
+
+
 async def change(request: Change) -> Number:
+    """Answer."""
+    return Number(value=1)
+
+
+async def take(request: Take) -> Number:
     """Answer."""
     return Number(value=1)
 
@@ -52,6 +65,27 @@ async def test_another_branch_of_the_same_run_is_refused_while_one_commands_the_
         bus.leases.acquire(("left",), ONE)
         with pytest.raises(LeaseRefused, match="in another branch"):
             await bus.call(Change(), to="left", holder=Holder("run-1", "root/b"))
+
+
+async def test_a_service_that_ends_a_run_waits_for_its_end_and_is_refused_by_who_cannot_be_ended() -> None:
+    """One that has not let go by then keeps the resource."""
+    async with SkillBus(new_clock()) as bus:
+        bus.advertise_service(Take, take, namespace="left", commands="left")
+        reasons = list[str]()
+
+        async def end(reason: str) -> None:
+            reasons.append(reason)
+            if len(reasons) > 1:
+                bus.leases.release_run("run-1")
+
+        bus.leases.acquire(("left",), ONE)
+        for able in (False, True):
+            if able:
+                bus.leases.on_claim("run-1", end)
+            with pytest.raises(LeaseRefused, match="left is commanded by run run-1"):
+                await bus.call(Take(), to="left", holder=TWO)
+        assert await bus.call(Take(), to="left", holder=TWO) == Number(value=1)
+        assert reasons == ["run-2 called left/take, which ends the run that has left"] * 2
 
 
 async def test_a_service_that_commands_nothing_is_answered_to_anybody() -> None:

@@ -30,6 +30,7 @@ import { ItemForm } from '../features/cellEditor/ItemForm'
 import { openCellDocument } from '../features/cellEditor/session'
 import { draftOf, useCellEditor } from '../features/cellEditor/store'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
+import { ModulePlugging } from '../features/modules/ModulePlugging'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
 import { DevicePanel } from '../features/devices/DevicePanel'
 import { RobotStrip } from '../features/robots/RobotStrip'
@@ -103,7 +104,13 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
       hasCellView={hasCellView(session)}
       onSelect={select}
       onTeach={session?.role === 'operator' ? () => onOpen(TEACH_HREF) : undefined}
-      device={driven && <DevicePanel key={driven.device} details={driven} now={deviceOf(node, state)} />}
+      device={
+        node.kind === 'module' && mayEdit && !node.name.includes('/') ? (
+          <ModulePlugging key={node.name} module={node.name} />
+        ) : (
+          driven && <DevicePanel key={driven.device} details={driven} now={deviceOf(node, state)} />
+        )
+      }
     />
   ) : (
     <Panel title="Details">

@@ -37,7 +37,7 @@ interface ItemDetailsProps {
   readonly onSelect: (address: string) => void
   /** Opens the page on which arms are jogged; undefined for a person who may look only. */
   readonly onTeach: (() => void) | undefined
-  /** What is told of a device with a driver. */
+  /** What is told of a device with a driver, or of a module that may be plugged. */
   readonly device: ReactNode
 }
 
