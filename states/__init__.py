@@ -38,6 +38,7 @@ from states.hand.check_held import CheckHeld as HandCheckHeld
 from states.hand.close import Close as HandClose
 from states.hand.open import Open as HandOpen
 from states.io.read_input import ReadInput
+from states.io.set_duty_cycle import SetDutyCycle
 from states.io.set_output import SetOutput
 from states.io.wait_for_input import WaitForInput
 from states.manipulation.pick_part import PickPart
@@ -136,6 +137,7 @@ _STATES: tuple[type[State], ...] = (
     SetController,
     SetImpedance,
     SetLoad,
+    SetDutyCycle,
     SetOutput,
     ReadInput,
     WaitForInput,

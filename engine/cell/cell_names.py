@@ -7,15 +7,16 @@ to the value of the parameter `robot` of the same state: `panda_hand` is `left/p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Final, Literal
+from typing import Final
 
 from engine.cell.drivers.driver import Driver
 from engine.cell.drivers.driver_assignments import assigned_drivers
 from engine.cell.robot_models import RobotModels, RobotSummary, robot_models, tool_kinds
 from engine.document.cell import Cell
+from engine.document.equipment import EquipmentDocument
 from engine.document.robot_spec import RobotSpec
 from engine.errors import FlexcellError
 from engine.state import Skills
@@ -24,18 +25,18 @@ from engine.wording.suggestions import did_you_mean
 CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
-    "robot", "tool", "link", "output", "input", "part", "person", "camera", "detector", "label", "frame", "arm_frame",
-    "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector", "planner", "topic",
-    "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer", "tool_point",
+    "robot", "tool", "link", "output", "input", "pwm_output", "part", "person", "camera", "detector", "label", "frame",
+    "arm_frame", "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector", "planner",
+    "topic", "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer", "tool_point",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
-`left/door`) belong to a robot or equipment, `label` (`eye/plate`) to a camera with a detector, `position`
-(`vice/closed`) and `hexapod_pose` to a device, `tool_point` (`probe/tip`) to a tool of a tool changer. `arm_frame` is a
-frame in which an arm accepts poses, `frame` a frame of the cell's view; those that the cell document names are both.
-`body`, `obstacle` and `scene_part` are objects of the planning scene, to which behaviors add. `tool_changer` is a robot
-that has one, `changeable_tool` a part that it takes. `topic` is one that the cell document declares. `controller` is a
-robot or `equipment`: both have outputs and inputs. `bus_topic` is any topic, `skill` any service or action: only an
-open cell knows those."""
+`left/door`) belong to a robot or equipment, `pwm_output` (`lights/lamp`) to equipment, `label` (`eye/plate`) to a
+camera with a detector, `position` (`vice/closed`) and `hexapod_pose` to a device, `tool_point` (`probe/tip`) to a
+tool of a tool changer. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of the cell's view;
+those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the planning scene,
+to which behaviors add. `tool_changer` is a robot that has one, `changeable_tool` a part that it takes. `topic` is
+one that the cell document declares. `controller` is a robot or `equipment`: both have outputs and inputs.
+`bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -47,9 +48,10 @@ _WORDS: Mapping[str, str] = {
     "tool_point": "tool centre point",
     "controller": "robot or equipment",
     "hexapod_pose": "pose",
+    "pwm_output": "PWM output",
 }
 _OWNED = frozenset[CellNameKind]((
-    "tool", "link", "output", "input", "label", "position", "hexapod_pose", "tool_point",
+    "tool", "link", "output", "input", "pwm_output", "label", "position", "hexapod_pose", "tool_point",
 ))  # fmt: skip
 _OF_PATHS = frozenset[CellNameKind](("position", "hexapod_pose", "tool_point"))
 """Those of them whose owner may stand on a module: `vice/jaws/closed`."""
@@ -183,8 +185,9 @@ def cell_names(cell: Cell) -> CellNames:
         "link": links,
         "equipment": frozenset(document.equipment),
         "controller": frozenset((*robots, *document.equipment)),
-        "output": frozenset((*_outputs(robots, summaries), *_pins(cell, "outputs"))),
-        "input": frozenset((*_inputs(robots, summaries), *_pins(cell, "inputs"))),
+        "output": frozenset((*_outputs(robots, summaries), *_pins(cell, lambda pins: pins.outputs))),
+        "input": frozenset((*_inputs(robots, summaries), *_pins(cell, lambda pins: pins.inputs))),
+        "pwm_output": frozenset(_pins(cell, lambda pins: pins.pwm_outputs)),
         "part": parts,
         "person": people,
         "camera": frozenset(document.cameras),
@@ -282,8 +285,7 @@ def _inputs(robots: Mapping[str, RobotSpec], summaries: Mapping[str, RobotSummar
         yield from (f"{name}/{number}" for number in range(summary.digital_inputs if summary is not None else 0))
 
 
-def _pins(cell: Cell, which: Literal["outputs", "inputs"]) -> Iterator[str]:
-    """Yield the digital pins of the equipment by name: their numbers change with the configuration."""
+def _pins(cell: Cell, of: Callable[[EquipmentDocument], Iterable[str]]) -> Iterator[str]:
+    """Yield pins of the equipment by name: their numbers change with the configuration."""
     for name, equipment in cell.pins.items():
-        pins = equipment.document.outputs if which == "outputs" else equipment.document.inputs
-        yield from (f"{name}/{pin}" for pin in pins)
+        yield from (f"{name}/{pin}" for pin in of(equipment.document))

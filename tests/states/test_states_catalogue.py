@@ -53,6 +53,7 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "hand.Close",
         "hand.Open",
         "io.ReadInput",
+        "io.SetDutyCycle",
         "io.SetOutput",
         "io.WaitForInput",
         "magnet.CheckHeld",

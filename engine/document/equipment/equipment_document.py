@@ -109,6 +109,11 @@ class EquipmentDocument(StrictModel, frozen=True, kw_only=True):
         return {name: number for number, name in enumerate(names)}
 
     @property
+    def pwm_outputs(self) -> tuple[str, ...]:
+        """The names of the outputs with a duty."""
+        return tuple(name for name, pin in self.pins.items() if isinstance(pin, PwmPin))
+
+    @property
     def stop_values(self) -> dict[str, bool | float]:
         """What STOP sets, by the name of the pin; those that keep their value are not in it."""
         return {

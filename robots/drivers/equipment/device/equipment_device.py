@@ -18,6 +18,7 @@ from engine.messages.device_state import DeviceState
 from engine.robot import DeviceStatus
 from robots.drivers.device_enabling import advertise_enabling, log_enabling
 from robots.drivers.device_history import DeviceHistory
+from robots.drivers.equipment.backends.pin_values import PinValue
 from robots.drivers.equipment.device.equipment_signals import EquipmentSignals, PinSignals
 from robots.drivers.equipment.device.equipment_transport import EquipmentCommand, EquipmentReading, EquipmentTransport
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
@@ -52,7 +53,7 @@ class EquipmentDevice:
         self._about = about
         self._link: FreshLink[EquipmentReading, EquipmentCommand] | None = None
         self._bus: SkillBus | None = None
-        self._signals = EquipmentSignals(name, self._now, self._switch)
+        self._signals = EquipmentSignals(name, self._now, self._put)
         self._lost_reason = ""
         self._problem = "not enabled"
         self._changed: Callable[[], None] = lambda: None
@@ -88,7 +89,7 @@ class EquipmentDevice:
         self._changed = callback
 
     def register(self, bus: SkillBus) -> None:
-        """Publish pins and `<name>/device`; advertise `SetOutput` and `EnableDevice`."""
+        """Publish pins and `<name>/device`; advertise `SetOutput`, `SetDutyCycle` and `EnableDevice`."""
         self._bus = bus
         self._signals.register(bus)
         advertise_enabling(bus, self._name, self)
@@ -256,6 +257,7 @@ class EquipmentDevice:
             pins.values,
             inputs=[name for name in pins.values if kinds.get(name) == "digital_input"],
             outputs=[name for name in pins.values if kinds.get(name) == "digital_output"],
+            pwm=[name for name in pins.values if kinds.get(name) == "pwm"],
         )
 
     def _misfit(self) -> str:
@@ -267,13 +269,13 @@ class EquipmentDevice:
         wrong = [*(name for name in due if due[name] != kinds.get(name)), *(name for name in kinds if name not in due)]
         return f"the server has other pins than the document of the cell: {', '.join(wrong)}" if wrong else ""
 
-    async def _switch(self, output: str, *, on: bool) -> None:
+    async def _put(self, output: str, value: PinValue) -> None:
         """Set an output and return when it is read back; raises RobotError."""
         problem = self._blocked()
         if problem:
             raise RobotError(problem, where=self._name, hint=_ENABLE_HINT)
         link = self._opened()
-        command = EquipmentCommand(action="set", values={output: on})
+        command = EquipmentCommand(action="set", values={output: value})
         self._pending[command] = written = link.submit(command)
 
         def end(done: asyncio.Future[float]) -> None:

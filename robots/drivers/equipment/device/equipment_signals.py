@@ -1,36 +1,46 @@
-"""Pins of equipment on the bus: digital inputs and outputs under their names, and the services that set them."""
+"""Pins of equipment on the bus under their names: digital inputs, digital and PWM outputs, and what sets them."""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from engine.bus import SkillBus
 from engine.errors import RobotError
 from engine.skills.digital_inputs import DigitalInputs, SimulateInput
 from engine.skills.digital_outputs import DigitalOutputs, SetOutput
+from engine.skills.pwm_outputs import PwmOutputs, SetDutyCycle
 from engine.skills.switch_result import SwitchResult
+from robots.drivers.equipment.backends.pin_values import PinValue
 
 
 @dataclass(frozen=True, kw_only=True)
 class PinSignals:
-    """What is known of the digital pins of one device."""
+    """What is known of the pins of one device."""
 
     inputs: DigitalInputs
     outputs: DigitalOutputs
+    pwm: PwmOutputs
 
     @classmethod
-    def of(cls, values: Mapping[str, bool | float], *, inputs: list[str], outputs: list[str]) -> PinSignals:
+    def of(
+        cls, values: Mapping[str, bool | float], *, inputs: list[str], outputs: list[str], pwm: list[str]
+    ) -> PinSignals:
         """Return the signals of these values; numbers are the places in the lists of names."""
         return cls(
             inputs=DigitalInputs(values=tuple(bool(values[name]) for name in inputs), names=_numbered(inputs)),
             outputs=DigitalOutputs(values=tuple(bool(values[name]) for name in outputs), names=_numbered(outputs)),
+            pwm=PwmOutputs(duty_cycles={name: float(values[name]) for name in pwm}),
         )
 
     @classmethod
     def unknown(cls, problem: str) -> PinSignals:
         """Return that nothing is known, and why."""
-        return cls(inputs=DigitalInputs(values=(), problem=problem), outputs=DigitalOutputs(values=(), problem=problem))
+        return cls(
+            inputs=DigitalInputs(values=(), problem=problem),
+            outputs=DigitalOutputs(values=(), problem=problem),
+            pwm=PwmOutputs(duty_cycles={}, problem=problem),
+        )
 
 
 def _numbered(names: list[str]) -> dict[str, int]:
@@ -38,12 +48,12 @@ def _numbered(names: list[str]) -> dict[str, int]:
 
 
 class EquipmentSignals:
-    """Publishes `<name>/digital_inputs` and `<name>/digital_outputs`, and serves `SetOutput` by name.
+    """Publishes `<name>/digital_inputs`, `…/digital_outputs` and `…/pwm_outputs`, and serves what sets outputs by name.
 
     Args:
         name: The namespace on the bus.
         now: Returns what is known now.
-        switch: `switch(name, on=…)` turns an output on or off and returns when it is; raises RobotError.
+        put: `put(name, value)` sets an output, on or off or to a duty cycle, and returns when it is; raises RobotError.
         simulate: `simulate(name, on=…)` sets an input; None for real ones.
     """
 
@@ -51,13 +61,13 @@ class EquipmentSignals:
         self,
         name: str,
         now: Callable[[], PinSignals],
-        switch: Callable[..., Awaitable[None]],
+        put: Callable[[str, PinValue], Awaitable[None]],
         *,
         simulate: Callable[..., None] | None = None,
     ) -> None:
         self._name = name
         self._now = now
-        self._switch = switch
+        self._put = put
         self._simulate = simulate
         self._bus: SkillBus | None = None
         self._published: PinSignals | None = None
@@ -67,7 +77,9 @@ class EquipmentSignals:
         self._bus = bus
         bus.topic(f"{self._name}/digital_inputs", DigitalInputs).provide(lambda: self._now().inputs)
         bus.topic(f"{self._name}/digital_outputs", DigitalOutputs).provide(lambda: self._now().outputs)
+        bus.topic(f"{self._name}/pwm_outputs", PwmOutputs).provide(lambda: self._now().pwm)
         bus.advertise_service(SetOutput, self._set_output, namespace=self._name, commands=self._name)
+        bus.advertise_service(SetDutyCycle, self._set_duty_cycle, namespace=self._name, commands=self._name)
         if self._simulate is not None:
             bus.advertise_service(SimulateInput, self._simulate_input, namespace=self._name)
         self._published = None
@@ -83,6 +95,8 @@ class EquipmentSignals:
             self._bus.topic(f"{self._name}/digital_inputs", DigitalInputs).publish(now.inputs)
         if before is None or now.outputs != before.outputs:
             self._bus.topic(f"{self._name}/digital_outputs", DigitalOutputs).publish(now.outputs)
+        if before is None or now.pwm != before.pwm:
+            self._bus.topic(f"{self._name}/pwm_outputs", PwmOutputs).publish(now.pwm)
 
     async def _set_output(self, request: SetOutput) -> SwitchResult:
         known = self._now().outputs
@@ -93,12 +107,24 @@ class EquipmentSignals:
             what = request.name or f"number {request.output}"
             message = f"{self._name} has no output {what}; its outputs are {_listed(known.names)}"
             return SwitchResult(success=False, message=message)
+        return await self._set(request.name, request.value, f"{request.name} is {'on' if request.value else 'off'}")
+
+    async def _set_duty_cycle(self, request: SetDutyCycle) -> SwitchResult:
+        known = self._now().pwm
+        if known.problem:
+            return SwitchResult(success=False, message=known.problem)
+        if request.name not in known.duty_cycles:
+            message = f"{self._name} has no PWM output {request.name}; those are {_listed(known.duty_cycles)}"
+            return SwitchResult(success=False, message=message)
+        return await self._set(request.name, request.duty_cycle, f"{request.name} is at {request.duty_cycle:.0%}")
+
+    async def _set(self, name: str, value: PinValue, done: str) -> SwitchResult:
         try:
-            await self._switch(request.name, on=request.value)
+            await self._put(name, value)
         except RobotError as error:
             return SwitchResult(success=False, message=str(error))
         self.publish_changes()
-        return SwitchResult(success=True, message=f"{request.name} is {'on' if request.value else 'off'}")
+        return SwitchResult(success=True, message=done)
 
     async def _simulate_input(self, request: SimulateInput) -> SwitchResult:
         assert self._simulate is not None
@@ -113,5 +139,5 @@ class EquipmentSignals:
         return SwitchResult(success=True, message=f"{name} is {'on' if request.value else 'off'}")
 
 
-def _listed(names: Mapping[str, int]) -> str:
+def _listed(names: Iterable[str]) -> str:
     return ", ".join(names) or "none"

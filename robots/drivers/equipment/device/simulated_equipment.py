@@ -8,6 +8,7 @@ from typing import Self
 from engine.bus import SkillBus
 from engine.document.equipment import DigitalInputPin, EquipmentDocument
 from engine.robot import DeviceStatus
+from robots.drivers.equipment.backends.pin_values import PinValue
 from robots.drivers.equipment.device.equipment_signals import EquipmentSignals, PinSignals
 
 
@@ -24,7 +25,7 @@ class SimulatedEquipment:
         self._name = name
         self._open = False
         self._values: dict[str, bool | float] = {}
-        self._signals = EquipmentSignals(name, self._now, self._switch, simulate=self._simulate)
+        self._signals = EquipmentSignals(name, self._now, self._put, simulate=self._simulate)
 
     @property
     def name(self) -> str:
@@ -58,10 +59,12 @@ class SimulatedEquipment:
 
     def _now(self) -> PinSignals:
         document = self._document
-        return PinSignals.of(self._values, inputs=list(document.inputs), outputs=list(document.outputs))
+        return PinSignals.of(
+            self._values, inputs=list(document.inputs), outputs=list(document.outputs), pwm=list(document.pwm_outputs)
+        )
 
-    async def _switch(self, output: str, *, on: bool) -> None:
-        self._values[output] = on
+    async def _put(self, output: str, value: PinValue) -> None:
+        self._values[output] = value
 
     def _simulate(self, name: str, *, on: bool) -> None:
         self._values[name] = on

@@ -19,6 +19,7 @@ from engine.clock import new_clock
 from engine.errors import RobotError
 from engine.messages.device_state import DeviceState
 from engine.skills.digital_outputs import SetOutput
+from engine.skills.pwm_outputs import PwmOutputs, SetDutyCycle
 from robots.drivers.equipment.configuration_file import ConfigurationFile
 from robots.drivers.equipment.device.equipment_device import EquipmentDevice
 from robots.drivers.equipment.device.equipment_transport import EquipmentCommand, EquipmentTransport
@@ -83,6 +84,26 @@ async def test_an_output_that_it_does_not_have_is_refused_with_those_that_it_has
         assert [each.success for each in answers] == [False, False]
         assert answers[0].message == "vice has no output there; its outputs are clamp, valve"
         assert answers[1].message == "vice has no output number 0; its outputs are clamp, valve"
+
+
+async def test_a_pwm_output_of_the_server_is_set_when_its_duty_cycle_is_read_back(tmp_path: Path) -> None:
+    pins = SIMULATED + "  lamp: {kind: pwm, pin: 12, safe: 0.0}\n"
+    file = written(tmp_path, port=0, pins=pins)
+    async with server_of(tmp_path, pins=pins) as server:
+        file.write_text(file.read_text(encoding="utf-8").replace("port: 0", f"port: {server.port}"), encoding="utf-8")
+        async with opened(file) as cell:
+            dim = SetDutyCycle(name="lamp", duty_cycle=0.25)
+            assert "not enabled" in (await cell.bus.call(dim, to=VICE)).message
+            await cell.enable(WHY)
+            assert (await cell.bus.call(dim, to=VICE)).message == "lamp is at 25%"
+            latest = cell.bus.topic(f"{VICE}/pwm_outputs", PwmOutputs).latest
+            assert latest == PwmOutputs(duty_cycles={"lamp": 0.25})
+            await asyncio.to_thread(_lamp_is, server.port, 0.25)
+
+
+def _lamp_is(port: int, duty_cycle: float) -> None:
+    with connected("127.0.0.1", port, name="witness") as client:
+        assert client.read().values["lamp"] == duty_cycle
 
 
 @asynccontextmanager
