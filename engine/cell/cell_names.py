@@ -26,8 +26,9 @@ CellNameKind = str
 """One of the kinds of names below, or the name of a kind of tool: then a robot with such a tool."""
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "pwm_output", "part", "person", "camera", "detector", "label", "frame",
-    "arm_frame", "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector", "planner",
-    "topic", "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer", "tool_point",
+    "arm_frame", "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector",
+    "planner", "topic", "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer",
+    "tool_point",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `pwm_output` (`lights/lamp`) to equipment, `label` (`eye/plate`) to a
