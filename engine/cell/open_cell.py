@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections import ChainMap
 from collections.abc import Callable, Mapping
 from contextlib import AsyncExitStack, suppress
 from pathlib import Path
@@ -289,7 +290,7 @@ class OpenCell:
             robots[name] = simulated[name] if entry.simulated else self._driven(driven[name], robots)
             await self._open_device(robots[name])
             if f"{name}/gripper" in driven:
-                tool = self._driven(driven[f"{name}/gripper"], robots)
+                tool = self._driven(driven[f"{name}/gripper"], ChainMap(robots, dict(self.equipment)))
                 await self._open_device(tool)
                 tools[tool.name] = tool
         self.robots = robots

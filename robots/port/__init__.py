@@ -14,7 +14,7 @@ from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.inputs import InputPort
 from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
-from robots.port.outputs import ConfirmedOutputs, OutputOwner, OutputPort, SwitchableOutputs
+from robots.port.outputs import ConfirmedOutputs, NamedOutputs, OutputOwner, OutputPort, SwitchableOutputs
 from robots.port.separation import MeasuredSeparation, PermittedSpeed, SeparationRule
 from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
@@ -39,6 +39,7 @@ __all__ = [
     "MotionEnd",
     "MotionReport",
     "MotionStream",
+    "NamedOutputs",
     "OutputOwner",
     "OutputPort",
     "PermittedSpeed",

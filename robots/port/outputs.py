@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 
@@ -32,6 +33,16 @@ class SwitchableOutputs(Protocol):
 
     async def switch(self, output: int, *, on: bool) -> None:
         """Turn an output on or off and return when it is, as far as the device confirms it; raises RobotError."""
+        ...
+
+
+@runtime_checkable
+class NamedOutputs(Protocol):
+    """Outputs whose names stay while their numbers may change: those of equipment."""
+
+    @property
+    def names(self) -> Mapping[str, int]:
+        """The present number of each output by name."""
         ...
 
 

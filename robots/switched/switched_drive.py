@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from engine.errors import RobotError
 from engine.messages import HoldEvidence
 from engine.skills.part_label import UNKNOWN_BODY
-from robots.port import SwitchableOutputs
+from robots.port import NamedOutputs, SwitchableOutputs
 from robots.sim.grip.tool_summary import ToolSummary
 from robots.switched.switch_motion import SwitchMotion
 from robots.switched.switched_options import SwitchedToolOptions
@@ -86,7 +86,8 @@ class SwitchedDrive:
 
     def reading(self) -> SwitchReading:
         """Return what is known of it; raises RobotError where its outputs are not known."""
-        holds = self._options.holds(self._outputs().values)
+        outputs, held = self._outputs(), self._options.hold_output
+        holds = self._options.holds(on=outputs.values[number_of(held, outputs, where=self.name)])
         passed = self.motion.progress if self.motion is not None else 1.0
         detected, evidence = self._detection()
         return SwitchReading(
@@ -105,4 +106,14 @@ class SwitchedDrive:
     async def _switch(self, *, holds: bool) -> None:
         outputs = self._outputs()
         for output, on in self._options.outputs(holds=holds).items():
-            await outputs.switch(output, on=on)
+            await outputs.switch(number_of(output, outputs, where=self.name), on=on)
+
+
+def number_of(output: int | str, outputs: SwitchableOutputs, *, where: str) -> int:
+    """Return the present number of an output; raises RobotError where there is none."""
+    names: Mapping[str, int] = outputs.names if isinstance(outputs, NamedOutputs) else {}
+    number = names.get(output, -1) if isinstance(output, str) else output
+    if not 0 <= number < len(outputs.values):
+        known = ", ".join(names) or f"0 to {len(outputs.values) - 1}"
+        raise RobotError(f"there is no output {output}", where=where, hint=f"there are the outputs {known}")
+    return number

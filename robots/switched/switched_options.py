@@ -10,8 +10,14 @@ from msgspec import Meta
 from engine.cell.drivers import DriverOptions
 from engine.document import StrictModel
 
-Output = Annotated[int, Meta(ge=0, le=255, description="Number of a digital output, from 0")]
-Input = Annotated[int, Meta(ge=0, le=255, description="Number of a digital input, from 0")]
+Output = (
+    Annotated[int, Meta(ge=0, le=255, description="Number of a digital output, from 0")]
+    | Annotated[str, Meta(min_length=1, description="Name of an output of equipment")]
+)
+Input = (
+    Annotated[int, Meta(ge=0, le=255, description="Number of a digital input, from 0")]
+    | Annotated[str, Meta(min_length=1, description="Name of an input of equipment")]
+)
 Seconds = Annotated[float, Meta(ge=0.0, le=30.0, description="Seconds that the tool takes")]
 
 
@@ -35,7 +41,9 @@ class SwitchedToolOptions(DriverOptions, frozen=True, kw_only=True):
     switched to hold, by a person's decision; without it none ever does.
     """
 
-    device: Annotated[str, Meta(description="Whose outputs they are; empty for the arm that carries the tool")] = ""
+    device: Annotated[
+        str, Meta(description="The robot or equipment with the outputs; empty for the arm with the tool")
+    ] = ""
     hold_output: Output = 0
     release_output: Annotated[Output | None, Meta(description="Of a valve with two coils: on to release")] = None
     inverted: Annotated[bool, Meta(description="Whether it holds while `hold_output` is off")] = False
@@ -51,7 +59,7 @@ class SwitchedToolOptions(DriverOptions, frozen=True, kw_only=True):
         if self.sensor is not None and self.assume_held:
             raise ValueError("with a `sensor` nothing has to be assumed: leave `assume_held` out")
 
-    def outputs(self, *, holds: bool) -> Mapping[int, bool]:
+    def outputs(self, *, holds: bool) -> Mapping[int | str, bool]:
         """Return the values of its outputs, in the order in which they are switched."""
         if self.release_output is None:
             return {self.hold_output: holds != self.inverted}
@@ -60,6 +68,11 @@ class SwitchedToolOptions(DriverOptions, frozen=True, kw_only=True):
         # A valve with two coils is never given both: the one that goes off is first.
         return {output: values[output] for output in sorted(ordered, key=lambda output: values[output])}
 
-    def holds(self, values: tuple[bool, ...]) -> bool:
-        """Return whether outputs with these values let it hold."""
-        return self.hold_output < len(values) and values[self.hold_output] != self.inverted
+    def holds(self, *, on: bool) -> bool:
+        """Return whether it holds while `hold_output` is on, or off."""
+        return on != self.inverted
+
+    def pins(self) -> tuple[int | str, ...]:
+        """Return all its outputs, and the input of its sensor."""
+        sensed = self.sensor.input if self.sensor is not None else None
+        return tuple(pin for pin in (self.hold_output, self.release_output, sensed) if pin is not None)

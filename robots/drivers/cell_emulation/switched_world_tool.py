@@ -25,13 +25,13 @@ class SwitchedWorldTool:
         self._options = options
         self._tool = tool
         self._holds = holds
-        self._values: dict[int, bool] = {}
+        self._values: dict[int | str, bool] = {}
         self._closed: bool | None = None
 
     def sensed(self) -> Mapping[int, bool]:
         """Return the input that its sensor is wired to with its value, nothing without such a sensor."""
         sensor = self._options.sensor
-        if sensor is None or sensor.input is None:
+        if sensor is None or not isinstance(sensor.input, int):
             return {}
         return {sensor.input: self._holds() != sensor.inverted}
 
@@ -41,7 +41,7 @@ class SwitchedWorldTool:
         hold, release = self._options.hold_output, self._options.release_output
         if output not in (hold, release):
             return
-        closed = self._values.get(hold, False) != self._options.inverted
+        closed = self._options.holds(on=self._values.get(hold, False))
         if release is not None and closed == self._values.get(release, False):
             return
         if closed != self._closed:

@@ -7,6 +7,7 @@ from typing import cast
 from engine.cell.drivers import DeviceContext, DeviceReport, installed_driver
 from engine.clock import Clock
 from engine.errors import CellError
+from engine.wording import did_you_mean
 from robots.drivers.switched_tool.switched_tool import SwitchedTool
 from robots.scene.scene_builder import driven_arm
 from robots.sim.grip.tool_summary import tool_summary
@@ -27,8 +28,12 @@ def new_switched_tool(options: SwitchedToolOptions, *, name: str, clock: Clock, 
         raise CellError("a real tool has no virtual time", where=name, hint=hint)
     document, kind = context.cell.document, name.rpartition("/")[2]
     owner = options.device or context.robot
-    if owner not in document.robots:
-        raise CellError(f"`device` is {owner}, which the cell does not have", where=name)
+    if owner not in {*document.robots, *document.equipment}:
+        hint = did_you_mean(owner, (*document.robots, *document.equipment))
+        raise CellError(f"`device` is {owner}, which the cell does not have", where=name, hint=hint)
+    if any(isinstance(pin, str) != (owner in document.equipment) for pin in options.pins()):
+        how = "by their names in its document" if owner in document.equipment else "by their numbers"
+        raise CellError(f"the outputs and inputs of {owner} are given {how}", where=name)
     if options.sensor is not None and options.sensor.topic and options.sensor.topic not in document.topics:
         hint = f"declare it: `topics: {{{options.sensor.topic}: {{type: boolean}}}}`"
         raise CellError(f"the cell declares no topic {options.sensor.topic}", where=name, hint=hint)

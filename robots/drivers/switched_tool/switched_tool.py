@@ -21,7 +21,7 @@ from robots.drivers.device_enabling import advertise_enabling, log_enabling
 from robots.drivers.device_history import DeviceHistory
 from robots.port import OutputOwner, SwitchableOutputs
 from robots.sim.grip.tool_summary import ToolSummary
-from robots.switched.switched_drive import SwitchedDrive
+from robots.switched.switched_drive import SwitchedDrive, number_of
 from robots.switched.switched_kind import SwitchedKind
 from robots.switched.switched_options import SwitchedToolOptions
 
@@ -133,13 +133,10 @@ class SwitchedTool:
         Raises:
             RobotError: the device with the outputs is not connected, or does not have them, or that of the sensor.
         """
-        values = self._outputs().values
-        missing = [output for output in self._options.outputs(holds=True) if output >= len(values)]
-        if missing:
-            hint = f"it has the outputs 0 to {len(values) - 1}"
-            raise RobotError(f"{self._owner} has no output {missing[0]}", where=self._name, hint=hint)
-        sensor = self._options.sensor
-        if sensor is not None and sensor.input is not None and sensor.input >= len(self._inputs()):
+        outputs, sensor = self._outputs(), self._options.sensor
+        for output in self._options.outputs(holds=True):
+            number_of(output, outputs, where=self._owner)
+        if sensor is not None and sensor.input is not None and self._input(sensor.input) is None:
             hint = "`flexcell devices` lists the inputs that its driver reads"
             raise RobotError(f"{self._owner} has no input {sensor.input}", where=self._name, hint=hint)
         log_enabling(self._name, by=by, reason=reason)
@@ -176,18 +173,20 @@ class SwitchedTool:
         if sensor is None or bus is None:
             return None
         if sensor.input is not None:
-            values = self._inputs()
-            value = values[sensor.input] if sensor.input < len(values) else None
+            value = self._input(sensor.input)
         else:
             latest = bus.topic(sensor.topic, TopicValue).latest
             value = latest.value if latest is not None else None
         return value != sensor.inverted if isinstance(value, bool) else None
 
-    def _inputs(self) -> tuple[bool, ...]:
-        """Return the inputs of the device with the outputs; none where nothing is known of them."""
+    def _input(self, which: int | str) -> bool | None:
+        """Return an input of the device with the outputs; None where nothing is known of it."""
         bus = self._bus
         latest = bus.topic(f"{self._owner}/digital_inputs", DigitalInputs).latest if bus is not None else None
-        return latest.values if latest is not None else ()
+        if latest is None:
+            return None
+        number = latest.names.get(which, -1) if isinstance(which, str) else which
+        return latest.values[number] if 0 <= number < len(latest.values) else None
 
     def _blocked(self) -> str:
         return self._loss() or self._problem

@@ -33,8 +33,16 @@ def test_outputs_are_set_and_what_goes_off_is_first(
 @pytest.mark.parametrize(("inverted", "held"), [(False, (False, True)), (True, (True, False))])
 def test_what_is_read_back_says_whether_it_holds(inverted: bool, held: tuple[bool, bool]) -> None:
     chosen = options(hold_output=1, inverted=inverted)
-    assert (chosen.holds((False, False)), chosen.holds((False, True))) == held
-    assert not chosen.holds((True,))
+    assert (chosen.holds(on=False), chosen.holds(on=True)) == held
+
+
+def test_all_pins_are_those_of_outputs_and_sensor() -> None:
+    assert options(hold_output="close", release_output="open", sensor={"input": "part"}).pins() == (
+        "close",
+        "open",
+        "part",
+    )
+    assert options().pins() == (0,)
 
 
 @pytest.mark.parametrize(

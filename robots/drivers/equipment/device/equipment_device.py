@@ -19,7 +19,7 @@ from engine.robot import DeviceStatus
 from robots.drivers.device_enabling import advertise_enabling, log_enabling
 from robots.drivers.device_history import DeviceHistory
 from robots.drivers.equipment.backends.pin_values import PinValue
-from robots.drivers.equipment.device.equipment_signals import EquipmentSignals, PinSignals
+from robots.drivers.equipment.device.equipment_signals import EquipmentOutputs, EquipmentSignals, PinSignals
 from robots.drivers.equipment.device.equipment_transport import EquipmentCommand, EquipmentReading, EquipmentTransport
 from robots.drivers.fresh_link import FreshLink, FreshReading, LinkTiming
 from robots.io.wire.link_error import LinkError
@@ -70,6 +70,11 @@ class EquipmentDevice:
     def lost_reason(self) -> str:
         """Why the connection is lost; empty while it is connected."""
         return self._lost_reason
+
+    @property
+    def outputs(self) -> EquipmentOutputs | None:
+        """Its digital outputs, for tools at them; None while it is not connected."""
+        return EquipmentOutputs(self._now, self._put) if self._link is not None and not self._lost_reason else None
 
     @property
     def status(self) -> DeviceStatus:

@@ -47,6 +47,33 @@ def _numbered(names: list[str]) -> dict[str, int]:
     return {name: number for number, name in enumerate(names)}
 
 
+class EquipmentOutputs:
+    """Implements `robots.port.SwitchableOutputs` and `NamedOutputs`: the digital outputs, for tools at them.
+
+    Args:
+        now: Returns what is known now.
+        put: As that of `EquipmentSignals`.
+    """
+
+    def __init__(self, now: Callable[[], PinSignals], put: Callable[[str, PinValue], Awaitable[None]]) -> None:
+        self._now = now
+        self._put = put
+
+    @property
+    def values(self) -> tuple[bool, ...]:
+        """Present values; none where nothing is known."""
+        return self._now().outputs.values
+
+    @property
+    def names(self) -> Mapping[str, int]:
+        """The present number of each by name."""
+        return self._now().outputs.names
+
+    async def switch(self, output: int, *, on: bool) -> None:
+        """Turn one on or off and return when it is read back; raises RobotError."""
+        await self._put(next(name for name, number in self.names.items() if number == output), on)
+
+
 class EquipmentSignals:
     """Publishes `<name>/digital_inputs`, `…/digital_outputs` and `…/pwm_outputs`, and serves what sets outputs by name.
 

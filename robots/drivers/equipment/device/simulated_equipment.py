@@ -9,7 +9,7 @@ from engine.bus import SkillBus
 from engine.document.equipment import DigitalInputPin, EquipmentDocument
 from engine.robot import DeviceStatus
 from robots.drivers.equipment.backends.pin_values import PinValue
-from robots.drivers.equipment.device.equipment_signals import EquipmentSignals, PinSignals
+from robots.drivers.equipment.device.equipment_signals import EquipmentOutputs, EquipmentSignals, PinSignals
 
 
 class SimulatedEquipment:
@@ -31,6 +31,11 @@ class SimulatedEquipment:
     def name(self) -> str:
         """The bus namespace of its skills."""
         return self._name
+
+    @property
+    def outputs(self) -> EquipmentOutputs | None:
+        """Its digital outputs, for tools at them; None while it is not connected."""
+        return EquipmentOutputs(self._now, self._put) if self._open else None
 
     @property
     def status(self) -> DeviceStatus:

@@ -17,6 +17,8 @@ flexcell: 1
 cell: bench
 topics:
   line/part_sensor: {type: boolean}
+equipment:
+  valves: {driver: {kind: equipment, host: 127.0.0.1}}
 robots:
   arm: {model: irb4600, driver: {kind: abb_irc5, host: 127.0.0.1}, gripper: {model: %s, driver: {%s}}}
 """
@@ -59,6 +61,8 @@ async def test_a_tool_has_the_range_and_force_of_its_model(
     [
         ("magnet", "kind: switched_magnet, device: other", "`device` is other, which the cell does not have"),
         ("magnet", "kind: switched_magnet, sensor: {topic: line/eye}", "the cell declares no topic line/eye"),
+        ("magnet", "kind: switched_magnet, device: valves", "of valves are given by their names in its document"),
+        ("magnet", "kind: switched_magnet, hold_output: coil", "of arm are given by their numbers"),
         ("magnet", "kind: switched_gripper", "the model of this tool is no gripper"),
         ("softhand", "kind: switched_magnet", "the model of this tool is no magnet"),
     ],

@@ -152,7 +152,7 @@ async def test_an_output_that_is_not_set_is_the_cause_of_the_failure() -> None:
 
 async def test_outputs_that_the_device_does_not_have_permit_nothing() -> None:
     async with switched("gripper", enable=False, hold_output=7) as (bus, _, _):
-        with pytest.raises(RobotError, match="left has no output 7"):
+        with pytest.raises(RobotError, match=r"left: there is no output 7 .*0 to 3"):
             await bus.call(EnableDevice(reason="a test"), to=GRIPPER)
 
 
