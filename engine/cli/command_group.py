@@ -28,6 +28,7 @@ _IMPORT_PATHS = {
     "login": "engine.cli.commands.login:login",
     "coverage": "engine.cli.commands.coverage:app",
     "states": "engine.cli.commands.states:app",
+    "doctor": "engine.cli.commands.doctor:doctor",
     "store": "engine.cli.commands.store:app",
     "bus": "engine.cli.commands.bus:app",
     "devices": "engine.cli.commands.devices.devices:devices",

@@ -7,6 +7,9 @@ import socket
 
 from engine.errors import FlexcellError
 
+DASHBOARD_PORT = 8642
+"""Where `flexcell serve` listens by default."""
+
 
 def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
     """Return a TCP socket bound to a loopback address, not yet listening; port 0 selects a free one.
@@ -24,7 +27,7 @@ def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
             "the dashboard listens on this machine only",
             where=host,
             hint="use 127.0.0.1; from another machine, an SSH tunnel for each port (--port, --view-port, --stop-port): "
-            "ssh -L 8642:127.0.0.1:8642 <machine>",
+            f"ssh -L {DASHBOARD_PORT}:127.0.0.1:{DASHBOARD_PORT} <machine>",
         )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     bound = socket.socket(family, socket.SOCK_STREAM)

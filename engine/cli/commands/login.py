@@ -37,7 +37,7 @@ def new_login_url(record: ServerRecord, *, role: str) -> str:
     """Request a one-time login address from a running server.
 
     Raises:
-        BusError: the server does not response, or rejects the request.
+        BusError: the server does not respond, or rejects the request.
     """
     headers = {"Authorization": f"Bearer {record.token}"}
     try:
@@ -50,7 +50,7 @@ def new_login_url(record: ServerRecord, *, role: str) -> str:
         )
     except httpx.TransportError as error:
         raise BusError(
-            f"the server does not response: {error}", where=record.url, hint="start it with `flexcell serve`"
+            f"the server does not respond: {error}", where=record.url, hint="start it with `flexcell serve`"
         ) from error
     link = msgspec.json.decode(verify_response(response).content, type=_Link)
     return f"{record.url}login?t={link.token}"

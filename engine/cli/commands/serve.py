@@ -15,6 +15,7 @@ from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import Simulate, read_pairs
 from engine.document.cell import load_cell
 from engine.document.simulated_devices import with_simulated_devices
+from engine.host.loopback import DASHBOARD_PORT
 from engine.project.server_state_folder import lock_server_state_folder
 from engine.project.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
 from engine.registry import load_states
@@ -25,7 +26,9 @@ def serve(
         Path | None, typer.Option(help="Cell to connect; without a cell, behaviors run without robots.")
     ] = None,
     simulate: Simulate = None,
-    port: Annotated[int, typer.Option(help="TCP port of the server; 0 selects a free port.", min=0, max=65535)] = 8642,
+    port: Annotated[
+        int, typer.Option(help="TCP port of the server; 0 selects a free port.", min=0, max=65535)
+    ] = DASHBOARD_PORT,
     host: Annotated[str, typer.Option(help="Loopback address to listen on.")] = "127.0.0.1",
     stop_port: Annotated[
         int,

@@ -12,12 +12,6 @@ _log = logging.getLogger("flexcell.meshes")
 _DIGEST = 32
 
 
-def cache_dir() -> Path:
-    """Return the user's cache folder of this program; it need not exist."""
-    base = os.environ.get("XDG_CACHE_HOME")
-    return (Path(base) if base else Path.home() / ".cache") / "flexcell"
-
-
 def content_key(data: bytes, *, recipe: str) -> str:
     """Return the cache key of the result of `recipe` on `data`."""
     return hashlib.sha256(recipe.encode() + b"\0" + data).hexdigest()

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.errors import CellError
+from engine.host.user_cache import cache_dir
 from engine.messages import Quaternion, Vector3
 from robots.model.robot_model import RobotModel
 from robots.model.urdf.description import resolve_uri
-from robots.model.urdf.mesh_cache import cache_dir, content_key, read_cached, write_cached
+from robots.model.urdf.mesh_cache import content_key, read_cached, write_cached
 from robots.model.urdf.mesh_file import require_triangles, verify_mesh_file
 
 Rgba = tuple[float, float, float, float]

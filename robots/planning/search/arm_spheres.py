@@ -8,11 +8,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from engine.host.user_cache import cache_dir
 from robots.model.inverse_kinematics.chain import chain_of
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
-from robots.model.urdf.mesh_cache import cache_dir, content_key, read_cached, write_cached
+from robots.model.urdf.mesh_cache import content_key, read_cached, write_cached
 from robots.planning.scene.arm_shapes import ArmShapes, arm_shapes
 from robots.planning.scene.coal_shapes import pin, rigid_of, shape_of
 from robots.planning.scene.compiled_problem import FREE, GRID_COLUMNS, SOLID_COLUMNS, CompiledProblem, Indices

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
+from engine.host.user_cache import cache_dir
 from engine.messages.shapes import Shape
 from robots.model.transform import RigidTransform
-from robots.model.urdf.mesh_cache import cache_dir, content_key, read_cached, write_cached
+from robots.model.urdf.mesh_cache import content_key, read_cached, write_cached
 from robots.planning.scene.convex_shapes import ConvexSolid, convex_solid, to_frame
 from robots.port import Array
 
