@@ -10,7 +10,7 @@ from importlib import metadata
 from packaging.requirements import Requirement
 from packaging.version import Version
 
-from engine.doctor.diagnosis import Diagnosis
+from engine.doctor.examination import Examination
 
 _DISTRIBUTION = "flexcell"
 _OLDEST = (3, 11)
@@ -29,9 +29,9 @@ def installed_version(package: str) -> str | None:
         return None
 
 
-def installation() -> Iterator[Diagnosis]:
+def installation() -> Iterator[Examination]:
     """Yield what is installed."""
-    yield Diagnosis(
+    yield Examination(
         group=_GROUP,
         subject="flexcell",
         condition="ok",
@@ -39,11 +39,11 @@ def installation() -> Iterator[Diagnosis]:
     )
     if sys.version_info < _OLDEST:
         advice = "install Python 3.11 or newer"
-        yield Diagnosis(group=_GROUP, subject="Python", condition="problem", state="too old", advice=advice)
+        yield Examination(group=_GROUP, subject="Python", condition="problem", state="too old", advice=advice)
     yield from extras(metadata.requires(_DISTRIBUTION) or (), installed_version)
 
 
-def extras(requires: Iterable[str], version_of: VersionOf) -> Iterator[Diagnosis]:
+def extras(requires: Iterable[str], version_of: VersionOf) -> Iterator[Examination]:
     """Yield the state of the base and of each extra.
 
     Args:
@@ -57,7 +57,7 @@ def extras(requires: Iterable[str], version_of: VersionOf) -> Iterator[Diagnosis
         yield _state(name, [each for each in requirements if name in _extras_of(each)], version_of)
 
 
-def _state(name: str, requirements: list[Requirement], version_of: VersionOf) -> Diagnosis:
+def _state(name: str, requirements: list[Requirement], version_of: VersionOf) -> Examination:
     subject = name if name == "base" else f"extra {name}"
     missing, wrong, excluded, count = list[str](), list[str](), list[str](), 0
     for each in requirements:
@@ -75,14 +75,14 @@ def _state(name: str, requirements: list[Requirement], version_of: VersionOf) ->
     install = f"pip install '{_DISTRIBUTION}[{name}]'" if name != "base" else f"pip install --upgrade {_DISTRIBUTION}"
     if wrong or (missing and name == "base"):
         state = "; ".join([*wrong, *([f"missing: {', '.join(missing)}"] if missing else [])])
-        return Diagnosis(group=_GROUP, subject=subject, condition="problem", state=state, advice=install)
+        return Examination(group=_GROUP, subject=subject, condition="problem", state=state, advice=install)
     if missing:
         state = "not installed" if len(missing) == count else f"missing: {', '.join(missing)}"
-        return Diagnosis(group=_GROUP, subject=subject, condition="note", state=state, advice=install)
+        return Examination(group=_GROUP, subject=subject, condition="note", state=state, advice=install)
     if excluded:
         state = f"no wheel for this Python or machine: {', '.join(excluded)}"
-        return Diagnosis(group=_GROUP, subject=subject, condition="note", state=state)
-    return Diagnosis(group=_GROUP, subject=subject, condition="ok", state="installed")
+        return Examination(group=_GROUP, subject=subject, condition="note", state=state)
+    return Examination(group=_GROUP, subject=subject, condition="ok", state="installed")
 
 
 def _extras_of(requirement: Requirement) -> frozenset[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from engine.bus.remote_bus import ServerRecord
-from engine.doctor.diagnosis import Condition, Diagnosis
+from engine.doctor.examination import Condition, Examination
 from engine.errors import BusError, FlexcellError
 from engine.host.loopback import bound_socket
 
@@ -19,7 +19,7 @@ _LEAST_GB = 1.0
 _ANSWER_S = 2.0
 
 
-def server_place(state: Path, *, cache: Path, host: str, port: int) -> Iterator[Diagnosis]:
+def server_place(state: Path, *, cache: Path, host: str, port: int) -> Iterator[Examination]:
     """Yield how the place is.
 
     Args:
@@ -32,7 +32,7 @@ def server_place(state: Path, *, cache: Path, host: str, port: int) -> Iterator[
     yield _writable("cache folder", cache, "note", "set XDG_CACHE_HOME to a folder that can be written")
     free_gb = shutil.disk_usage(_existing(state)).free / 1e9
     low = free_gb < _LEAST_GB
-    yield Diagnosis(
+    yield Examination(
         group=_GROUP,
         subject="disk",
         condition="note" if low else "ok",
@@ -42,7 +42,7 @@ def server_place(state: Path, *, cache: Path, host: str, port: int) -> Iterator[
     yield _port(state, host=host, port=port)
 
 
-def _writable(subject: str, folder: Path, otherwise: Condition, advice: str) -> Diagnosis:
+def _writable(subject: str, folder: Path, otherwise: Condition, advice: str) -> Examination:
     there = _existing(folder)
     try:
         if folder.exists() and not folder.is_dir():
@@ -51,9 +51,9 @@ def _writable(subject: str, folder: Path, otherwise: Condition, advice: str) -> 
             pass
     except OSError as error:
         state = f"{folder} cannot be written: {error.strerror}"
-        return Diagnosis(group=_GROUP, subject=subject, condition=otherwise, state=state, advice=advice)
+        return Examination(group=_GROUP, subject=subject, condition=otherwise, state=state, advice=advice)
     made = "" if folder.exists() else ", made by the first use"
-    return Diagnosis(group=_GROUP, subject=subject, condition="ok", state=f"{folder}{made}")
+    return Examination(group=_GROUP, subject=subject, condition="ok", state=f"{folder}{made}")
 
 
 def _existing(folder: Path) -> Path:
@@ -61,20 +61,20 @@ def _existing(folder: Path) -> Path:
     return next((each for each in (folder, *folder.absolute().parents) if each.is_dir()), Path())
 
 
-def _port(state: Path, *, host: str, port: int) -> Diagnosis:
+def _port(state: Path, *, host: str, port: int) -> Examination:
     try:
         record = ServerRecord.read(state)
     except BusError:
         record = None
     if record is not None and _answers(record.url):
-        return Diagnosis(group=_GROUP, subject="server", condition="ok", state=f"runs at {record.url}")
+        return Examination(group=_GROUP, subject="server", condition="ok", state=f"runs at {record.url}")
     try:
         bound_socket(host, port, option="--port").close()
     except FlexcellError as error:
-        return Diagnosis(
+        return Examination(
             group=_GROUP, subject="server", condition="note", state=str(error.statement), advice=error.hint or ""
         )
-    return Diagnosis(group=_GROUP, subject="server", condition="ok", state=f"none runs here; port {port} is free")
+    return Examination(group=_GROUP, subject="server", condition="ok", state=f"none runs here; port {port} is free")
 
 
 def _answers(url: str) -> bool:

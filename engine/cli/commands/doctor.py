@@ -12,9 +12,9 @@ from rich.console import Console
 from rich.text import Text
 
 from engine.cli.exit_code import ExitCode
-from engine.doctor.diagnosis import Condition, Diagnosis
+from engine.doctor.examination import Condition, Examination
+from engine.doctor.host_machine import machine
 from engine.doctor.installation import installation
-from engine.doctor.machine import machine
 from engine.doctor.server_place import server_place
 from engine.host.loopback import DASHBOARD_PORT
 from engine.host.state_folder_names import STATE_FOLDER
@@ -46,7 +46,7 @@ def doctor(
         raise typer.Exit(ExitCode.OTHER_OUTCOME)
 
 
-def _print(found: list[Diagnosis]) -> None:
+def _print(found: list[Examination]) -> None:
     console = Console(soft_wrap=True)
     width = max(len(each.subject) for each in found)
     for group in dict.fromkeys(each.group for each in found):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.doctor.diagnosis import Diagnosis
+from engine.doctor.examination import Examination
 from engine.doctor.installation import extras, installation
 
 REQUIRES = (
@@ -18,14 +18,14 @@ REQUIRES = (
 ALL = {"msgspec": "0.21", "pymodbus": "3.16.1", "pyserial": "3.5"}
 
 
-def told(**versions: str | None) -> dict[str, Diagnosis]:
+def examined(**versions: str | None) -> dict[str, Examination]:
     """Return what is told with these versions installed, None for none, by subject."""
     installed: dict[str, str | None] = {**ALL, **versions}
     return {each.subject: each for each in extras(REQUIRES, installed.get)}
 
 
 def test_what_is_installed_is_ok_and_extras_of_developers_are_not_told() -> None:
-    found = told()
+    found = examined()
     assert {name: each.condition for name, each in found.items()} == {
         "base": "ok",
         "extra robotiq": "ok",
@@ -40,17 +40,17 @@ def test_what_is_installed_is_ok_and_extras_of_developers_are_not_told() -> None
     [({"pymodbus": None}, "missing: pymodbus"), ({"pymodbus": None, "pyserial": None}, "not installed")],
 )
 def test_an_extra_that_is_missing_is_a_note_with_the_command(versions: dict[str, None], state: str) -> None:
-    found = told(**versions)["extra robotiq"]
+    found = examined(**versions)["extra robotiq"]
     assert (found.condition, found.state, found.advice) == ("note", state, "pip install 'flexcell[robotiq]'")
 
 
 def test_another_version_is_a_problem_also_of_an_extra() -> None:
-    found = told(pymodbus="3.15.0")["extra robotiq"]
+    found = examined(pymodbus="3.15.0")["extra robotiq"]
     assert (found.condition, found.state) == ("problem", "pymodbus 3.15.0 instead of ==3.16.*")
 
 
 def test_a_base_without_a_package_is_a_problem() -> None:
-    found = told(msgspec=None)["base"]
+    found = examined(msgspec=None)["base"]
     assert (found.condition, found.state) == ("problem", "missing: msgspec")
 
 

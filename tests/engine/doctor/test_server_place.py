@@ -8,14 +8,14 @@ from pathlib import Path
 import msgspec
 
 from engine.bus.remote_bus import ServerRecord, server_file
-from engine.doctor.diagnosis import Diagnosis
+from engine.doctor.examination import Examination
 from engine.doctor.server_place import server_place
 from tests.robots.own_address import own_address
 
 HOST = own_address()
 
 
-def told(folder: Path, *, port: int, state: str = "state", cache: str = "cache") -> dict[str, Diagnosis]:
+def examined(folder: Path, *, port: int, state: str = "state", cache: str = "cache") -> dict[str, Examination]:
     """Return what is told of a place, by subject."""
     found = server_place(folder / state, cache=folder / cache, host=HOST, port=port)
     return {each.subject: each for each in found}
@@ -32,7 +32,7 @@ def taken() -> socket.socket:
 def test_folders_that_are_not_there_yet_are_fine_and_are_not_made(tmp_path: Path) -> None:
     with taken() as held:
         port = held.getsockname()[1]
-    found = told(tmp_path, port=port)
+    found = examined(tmp_path, port=port)
     assert [each.condition for each in found.values()] == ["ok"] * 4
     assert found["state folder"].state.endswith("state, made by the first use")
     assert found["server"].state == f"none runs here; port {port} is free"
@@ -43,7 +43,7 @@ def test_a_state_folder_that_is_a_file_is_a_problem_and_a_cache_that_is_one_a_no
     for name in ("state", "cache"):
         (tmp_path / name).write_text("", encoding="utf-8")
     with taken() as held:
-        found = told(tmp_path, port=held.getsockname()[1])
+        found = examined(tmp_path, port=held.getsockname()[1])
     assert [found[name].condition for name in ("state folder", "cache folder")] == ["problem", "note"]
     assert "state cannot be written: is no folder" in found["state folder"].state
     assert "flexcell serve --state FOLDER" in found["state folder"].advice
@@ -52,7 +52,7 @@ def test_a_state_folder_that_is_a_file_is_a_problem_and_a_cache_that_is_one_a_no
 def test_a_port_that_another_program_has_is_a_note_with_what_to_do(tmp_path: Path) -> None:
     with taken() as held:
         port = held.getsockname()[1]
-        found = told(tmp_path, port=port)["server"]
+        found = examined(tmp_path, port=port)["server"]
     assert (found.condition, str(port) in found.state) == ("note", True)
     assert "--port" in found.advice
 
@@ -64,5 +64,5 @@ def test_a_server_that_answers_is_named_and_the_record_of_one_that_was_killed_is
         url = f"http://{HOST}:{port}/"
         record = ServerRecord(url=url, token="a token", pid=1)
         server_file(tmp_path / "state").write_bytes(msgspec.json.encode(record))
-        assert told(tmp_path, port=port)["server"].state == f"runs at {url}"
-    assert told(tmp_path, port=port)["server"].state == f"none runs here; port {port} is free"
+        assert examined(tmp_path, port=port)["server"].state == f"runs at {url}"
+    assert examined(tmp_path, port=port)["server"].state == f"none runs here; port {port} is free"

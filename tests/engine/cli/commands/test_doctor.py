@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.doctor.diagnosis import Diagnosis
+from engine.doctor.examination import Examination
 from tests.engine.cli.command import flexcell
 
 
@@ -22,6 +22,6 @@ def test_it_tells_each_subject_with_what_to_do_and_changes_nothing(tmp_path: Pat
 def test_what_every_user_needs_and_does_not_work_is_exit_code_1(tmp_path: Path) -> None:
     (tmp_path / ".flexcell").write_text("", encoding="utf-8")
     done = flexcell("doctor", "--json", cwd=tmp_path)
-    found = msgspec.json.decode(done.out, type=list[Diagnosis])
+    found = msgspec.json.decode(done.out, type=list[Examination])
     assert done.code == 1
     assert [each.subject for each in found if each.condition == "problem"] == ["state folder"]

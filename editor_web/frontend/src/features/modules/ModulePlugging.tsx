@@ -21,7 +21,7 @@ interface Modules {
 }
 
 export function ModulePlugging({ module }: { readonly module: string }) {
-  const [told, setTold] = useState<Modules>()
+  const [known, setKnown] = useState<Modules>()
   const [leases, setLeases] = useState<readonly LeaseMetrics[]>([])
   const [chosen, setChosen] = useState('')
   const [problem, setProblem] = useState('')
@@ -29,12 +29,12 @@ export function ModulePlugging({ module }: { readonly module: string }) {
   const [isAsked, setAsked] = useState(false)
   useData({ number: 0, traffic: true, topic: TOPIC, fields: [], run: '', goals: '', cell: false }, (frame) => {
     if (frame.k === 'traffic') setLeases(frame.leases)
-    if (frame.k === 'message' && frame.topic === TOPIC && !frame.problem) setTold(frame.value as Modules)
+    if (frame.k === 'message' && frame.topic === TOPIC && !frame.problem) setKnown(frame.value as Modules)
   })
-  const at = told?.modules.find((each) => each.module === module)?.connector
-  if (!told || at === undefined) return null
+  const at = known?.modules.find((each) => each.module === module)?.connector
+  if (!known || at === undefined) return null
   const lease = leases.find((each) => firstOfPath(each.resource) === module)
-  const goal = told.free.includes(chosen) ? chosen : told.free[0]
+  const goal = known.free.includes(chosen) ? chosen : known.free[0]
 
   function send(service: string, request: Readonly<Record<string, unknown>>): void {
     setBusy(true)
@@ -66,8 +66,8 @@ export function ModulePlugging({ module }: { readonly module: string }) {
               size="xs"
               label="To"
               value={goal ?? ''}
-              data={[...told.free]}
-              disabled={told.free.length === 0}
+              data={[...known.free]}
+              disabled={known.free.length === 0}
               onChange={(event) => setChosen(event.currentTarget.value)}
             />
             <CommandButton

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from ctypes.util import find_library
 from pathlib import Path
 
-from engine.doctor.diagnosis import Diagnosis
+from engine.doctor.examination import Examination
 
 _GROUP = "machine"
 _CORES = 2
@@ -21,7 +21,7 @@ _REAL_TIME = Path("/sys/kernel/realtime")
 _SERIAL = ("ttyUSB*", "ttyACM*")
 
 
-def machine() -> Iterator[Diagnosis]:
+def machine() -> Iterator[Examination]:
     """Yield how the machine is; takes about 0.3 s."""
     yield _cores()
     yield _punctuality()
@@ -30,14 +30,14 @@ def machine() -> Iterator[Diagnosis]:
     yield from _serial_devices(Path("/dev"))
 
 
-def _cores() -> Diagnosis:
+def _cores() -> Examination:
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     load = os.getloadavg()[0]
     few = cores < _CORES
     advice = "a cell with its dashboard needs two cores" if few else ""
     if load > cores:
         advice = advice or "other programs need the cores too: motions in real time may be late"
-    return Diagnosis(
+    return Examination(
         group=_GROUP,
         subject="cores",
         condition="note" if advice else "ok",
@@ -46,11 +46,11 @@ def _cores() -> Diagnosis:
     )
 
 
-def _punctuality() -> Diagnosis:
+def _punctuality() -> Examination:
     late_s = sorted(_lateness_s() for _ in range(_SLEEPS))
     worst_s = late_s[round(0.99 * (_SLEEPS - 1))]
     is_late = worst_s > _LATE_S
-    return Diagnosis(
+    return Examination(
         group=_GROUP,
         subject="punctuality",
         condition="note" if is_late else "ok",
@@ -65,13 +65,13 @@ def _lateness_s() -> float:
     return time.perf_counter() - started_s - _SLEEP_S
 
 
-def _real_time() -> Diagnosis:
+def _real_time() -> Examination:
     if not sys.platform.startswith("linux"):
-        return Diagnosis(group=_GROUP, subject="real time", condition="note", state="not on this system")
+        return Examination(group=_GROUP, subject="real time", condition="note", state="not on this system")
     priority = resource.getrlimit(resource.RLIMIT_RTPRIO)[0]
     may = os.geteuid() == 0 or priority > 0
     kernel = _REAL_TIME.exists() and _REAL_TIME.read_text(encoding="ascii").strip() == "1"
-    return Diagnosis(
+    return Examination(
         group=_GROUP,
         subject="real time",
         condition="ok" if may and kernel else "note",
@@ -80,9 +80,9 @@ def _real_time() -> Diagnosis:
     )
 
 
-def _graphics() -> Diagnosis:
+def _graphics() -> Examination:
     found = next((name for name in ("EGL", "OSMesa") if find_library(name)), "")
-    return Diagnosis(
+    return Examination(
         group=_GROUP,
         subject="graphics",
         condition="ok" if found else "note",
@@ -91,10 +91,10 @@ def _graphics() -> Diagnosis:
     )
 
 
-def _serial_devices(folder: Path) -> Iterator[Diagnosis]:
+def _serial_devices(folder: Path) -> Iterator[Examination]:
     for device in sorted(path for pattern in _SERIAL for path in folder.glob(pattern)):
         may = os.access(device, os.R_OK | os.W_OK)
-        yield Diagnosis(
+        yield Examination(
             group=_GROUP,
             subject="serial device",
             condition="ok" if may else "note",

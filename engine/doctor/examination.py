@@ -10,7 +10,7 @@ Condition = Literal["ok", "note", "problem"]
 """`note`: works, with less than is possible. `problem`: something that every user needs does not work."""
 
 
-class Diagnosis(msgspec.Struct, frozen=True, kw_only=True):
+class Examination(msgspec.Struct, frozen=True, kw_only=True):
     """What was looked at, how it is in one line, and what to do where that is not `ok`."""
 
     group: str
