@@ -7,7 +7,7 @@ import pytest
 from engine.doctor import host_machine
 
 
-def test_each_subject_is_told_and_a_note_says_what_to_do() -> None:
+def test_each_subject_is_there_and_a_note_says_what_to_do() -> None:
     found = {each.subject: each for each in host_machine.machine()}
     assert set(found) >= {"cores", "punctuality", "real time", "graphics"}
     assert all(each.state for each in found.values())

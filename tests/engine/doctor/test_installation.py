@@ -24,7 +24,7 @@ def examined(**versions: str | None) -> dict[str, Examination]:
     return {each.subject: each for each in extras(REQUIRES, installed.get)}
 
 
-def test_what_is_installed_is_ok_and_extras_of_developers_are_not_told() -> None:
+def test_what_is_installed_is_ok_and_extras_of_developers_are_left_out() -> None:
     found = examined()
     assert {name: each.condition for name, each in found.items()} == {
         "base": "ok",

@@ -10,7 +10,7 @@ from engine.doctor.examination import Examination
 from tests.engine.cli.command import flexcell
 
 
-def test_it_tells_each_subject_with_what_to_do_and_changes_nothing(tmp_path: Path) -> None:
+def test_it_prints_each_subject_with_what_to_do_and_changes_nothing(tmp_path: Path) -> None:
     done = flexcell("doctor", cwd=tmp_path)
     assert (done.code, list(tmp_path.iterdir())) == (0, [])
     lines = done.out.splitlines()
