@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Protocol, Self
 
+import numpy as np
+
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.errors import RobotError
@@ -31,9 +33,11 @@ from robots.arm.services.inverse_kinematics_services import InverseKinematicsSer
 from robots.arm.services.output_services import OutputServices
 from robots.arm.waypoint_motions import WaypointMotions
 from robots.gripper.tool_server import ToolServer
+from robots.model.arm_base import ArmBase
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
 from robots.port import ArmPort, GraspCommand, Tolerance
+from robots.scene.sim_scene import ArmPlacement
 from robots.tool_changer import ToolChangerServer
 from robots.workspace.workspace import Workspace
 
@@ -54,7 +58,7 @@ class ArmServer:
     Args:
         name: Bus namespace and resource of the arm.
         model: Model of the arm.
-        base: Pose of the arm's base link in the world.
+        base: Pose of the arm's base link in the world, or what is shared of it.
         port: Commands the arm; connected by its owner before this robot is entered.
         clock: Virtual time plans inline, real time in a thread.
         gripper: The tool on the arm, if any; served and stopped together with it.
@@ -72,7 +76,7 @@ class ArmServer:
         *,
         name: str,
         model: RobotModel,
-        base: Pose,
+        base: Pose | ArmBase,
         port: ArmPort,
         clock: Clock,
         gripper: ToolServer | None = None,
@@ -86,7 +90,7 @@ class ArmServer:
         self._runner = runner = MotionRunner(
             name=name,
             model=model,
-            base=RigidTransform.from_pose(base),
+            base=base if isinstance(base, ArmBase) else ArmBase(RigidTransform.from_pose(base)),
             port=port,
             clock=clock,
             tolerance=tolerance or Tolerance(),
@@ -168,6 +172,16 @@ class ArmServer:
             tool_licence=model.tool.licence if model.tool is not None else "",
             calibration=model.calibration,
         )
+
+    def take_placement(self, placement: ArmPlacement) -> None:
+        """Stand where the cell has the base now; everything that computes with this arm follows."""
+        runner, base = self._runner, RigidTransform.from_pose(placement.base)
+        runner.frames.loose = placement.loose
+        if not (
+            np.array_equal(base.xyz, runner.frames.base.xyz) and np.array_equal(base.xyzw, runner.frames.base.xyzw)
+        ):
+            runner.kinematics.stand.stand_at(base)
+            self._describe()
 
     def grips(self) -> dict[str, GraspCommand]:
         """Return the grasp command that the gripper executes or holds, by the gripper's name; empty without one."""

@@ -26,7 +26,7 @@ from engine.skills.planning import (
     PlanOptions,
 )
 from robots.arm.execution.motion_runner import NO_FRAME, MotionRunner
-from robots.arm.execution.tool_frames import WORLD
+from robots.arm.execution.tool_frames import LOOSE_HINT, WORLD
 from robots.arm.execution.validate_numbers import are_numbers
 from robots.arm.free_motion.adaptive_motion import AdaptiveMotion
 from robots.arm.free_motion.adaptive_motion_report import AdaptiveMotionReport
@@ -114,6 +114,8 @@ class FreeMotions:
     ) -> FreeMotionResult:
         """Plan the first path, or reject the goal; follow it, and replan with `onward` where it is blocked."""
         runner, workspace = self._runner, self._workspace
+        if runner.frames.loose:
+            raise GoalRejected(f"the base of {runner.name} is released", where=handle.address, hint=LOOSE_HINT)
         handle.feedback(self._feedback("planning"))
         workspace.require()
         try:

@@ -13,6 +13,7 @@ import numpy as np
 
 from engine.errors import PathBlocked
 from engine.skills.collision_options import CollisionOptions
+from robots.arm.execution.tool_frames import LOOSE_HINT
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.unknown_space_check import UNKNOWN_SPACE_HINT, UnknownSpaceCheck
@@ -129,9 +130,16 @@ class PathGuard:
     async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
         workspace = self.workspace
+        scene = workspace.scene_for(self.arm)
+        if scene.arm(self.arm).placement.loose:
+            raise PathBlocked(
+                f"the base of {self.arm} is released: nobody knows where its path leads",
+                where=self.arm,
+                hint=LOOSE_HINT,
+            )
         return await workspace.planners.check_path(
             PathCheckRequest(
-                scene=self._allowing(workspace.scene_for(self.arm), rules.may_touch),
+                scene=self._allowing(scene, rules.may_touch),
                 arm=self.arm,
                 trajectory=trajectory,
                 from_s=from_s,
