@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Protocol, Self
 
-import numpy as np
-
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.errors import RobotError
@@ -100,6 +98,7 @@ class ArmServer:
         self._gripper = gripper
         self._tool_changer = tool_changer
         self._describe: Callable[[], None] = _no_operation
+        self._described = runner.frames.base.to_pose(WORLD)
         self.outputs = outputs
         self.inputs = inputs
         self._report = report = ArmStatusPublisher(runner)
@@ -152,6 +151,7 @@ class ArmServer:
     def description(self) -> RobotDescription:
         """Return the description of this arm: limits, base pose and URDF text."""
         model, limits = self._runner.model, self._runner.model.limits
+        self._described = self._runner.frames.base.to_pose(WORLD)
         changed = self._tool_changer.tool if self._tool_changer is not None else ""
         return RobotDescription(
             name=self.name,
@@ -162,7 +162,7 @@ class ArmServer:
             upper_rad=limits.upper_rad,
             velocity_rad_s=limits.velocity_rad_s,
             acceleration_rad_s2=limits.acceleration_rad_s2,
-            base=self._runner.frames.base.to_pose(WORLD),
+            base=self._described,
             tool_frame=f"{self.name}/{model.tool_link}",
             licence=model.licence,
             effort_nm=limits.effort_nm,
@@ -175,12 +175,11 @@ class ArmServer:
 
     def take_placement(self, placement: ArmPlacement) -> None:
         """Stand where the cell has the base now; everything that computes with this arm follows."""
-        runner, base = self._runner, RigidTransform.from_pose(placement.base)
-        runner.frames.loose = placement.loose
-        if not (
-            np.array_equal(base.xyz, runner.frames.base.xyz) and np.array_equal(base.xyzw, runner.frames.base.xyzw)
-        ):
-            runner.kinematics.stand.stand_at(base)
+        frames, stand = self._runner.frames, self._runner.kinematics.stand
+        frames.loose = placement.loose
+        if placement.base != stand.pose.to_pose(WORLD):
+            stand.stand_at(RigidTransform.from_pose(placement.base))
+        if not placement.loose and placement.base != self._described:
             self._describe()
 
     def grips(self) -> dict[str, GraspCommand]:

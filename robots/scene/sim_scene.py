@@ -20,6 +20,8 @@ from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 
 Rgba = tuple[float, float, float, float]
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
+LOOSE_HINT = "lock the brakes of its linear unit first"
+"""What to do about an arm whose base is loose."""
 
 
 class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):

@@ -12,10 +12,9 @@ from engine.wording import did_you_mean
 from robots.model.arm_base import ArmBase
 from robots.model.transform import RigidTransform
 from robots.port import Array
+from robots.scene.sim_scene import LOOSE_HINT
 
 WORLD = "world"
-LOOSE_HINT = "lock the brakes of its linear unit first"
-"""What to do about an arm whose base is released."""
 # Beyond any cell; larger values may overflow in calculations.
 _FARTHEST_M = 1e6
 

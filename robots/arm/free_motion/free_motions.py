@@ -26,7 +26,7 @@ from engine.skills.planning import (
     PlanOptions,
 )
 from robots.arm.execution.motion_runner import NO_FRAME, MotionRunner
-from robots.arm.execution.tool_frames import LOOSE_HINT, WORLD
+from robots.arm.execution.tool_frames import WORLD
 from robots.arm.execution.validate_numbers import are_numbers
 from robots.arm.free_motion.adaptive_motion import AdaptiveMotion
 from robots.arm.free_motion.adaptive_motion_report import AdaptiveMotionReport
@@ -41,6 +41,7 @@ from robots.arm.scene_queries.path_planner import (
 )
 from robots.planning.request import JointGoal, PathGoal, PlanRefusal, PoseGoal
 from robots.port import Array
+from robots.scene.sim_scene import LOOSE_HINT
 from robots.supervise_goal import FEEDBACK_S
 from robots.workspace.workspace import Workspace
 

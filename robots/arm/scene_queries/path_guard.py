@@ -13,7 +13,6 @@ import numpy as np
 
 from engine.errors import PathBlocked
 from engine.skills.collision_options import CollisionOptions
-from robots.arm.execution.tool_frames import LOOSE_HINT
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
 from robots.arm.scene_queries.path_planner import describe_contacts
 from robots.arm.scene_queries.unknown_space_check import UNKNOWN_SPACE_HINT, UnknownSpaceCheck
@@ -22,6 +21,7 @@ from robots.motion.slow_section import slow_section
 from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.scene.sim_scene import LOOSE_HINT
 from robots.workspace.path_reservations import is_reserved
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
