@@ -1,7 +1,7 @@
 """How near to its places an arm pulls its own base on a passive linear unit, with and without errors of the arm.
 
-`python -P benchmarks/linear_unit.py --seeds 20` pulls the base of `behaviors/cells/linear_unit.yaml` 0.8 m along the rail
-and back in one open cell a seed, and prints a table of what the world shows after the arm let go.
+`python -P benchmarks/linear_unit.py --seeds 20` pulls the base of `behaviors/cells/linear_unit.yaml` 0.8 m along the
+rail and back in one open cell a seed, and prints a table of what the world shows after the arm let go.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ class LinearUnitServer:
             refused = f"the tool centre point is {1e3 * away_m:.0f} mm from the nearest anchor, {anchor}"
         frame = f"{arm.name}/{arm.robot().base_link}"
         # The base goes along the rail, so the anchor goes back along it in the frame of the base.
-        goal = tuple(xyz - (goal_m - start_m) * way for xyz, way in zip(held.xyz, along, strict=True))
+        goal = tuple(at - (goal_m - start_m) * one for at, one in zip(held.xyz, along, strict=True))
         return BasePull(
             refused=refused,
             robot=unit.robot,
@@ -104,7 +104,7 @@ class LinearUnitServer:
 
     def _place_m(self, carriage: Pose) -> float:
         moved = (now - before for now, before in zip(carriage.xyz, self._home.xyz, strict=True))
-        return sum(one * way for one, way in zip(moved, self._rail, strict=True))
+        return sum(one * along for one, along in zip(moved, self._rail, strict=True))
 
     def _known_m(self, arm: ArmPlacement) -> float:
         """Return the place at which everybody in the cell knows the base to be."""

@@ -91,10 +91,10 @@ class SimulatedDevice:
         braked = self._device.braked
         if braked is None:
             return
-        gives_way = self.released or self.slipping
-        force = braked.friction_n if gives_way else braked.holding_n
+        is_loose = self.released or self.slipping
+        force = braked.friction_n if is_loose else braked.holding_n
         if isinstance(braked, LinearUnitSpec):
-            self._world.host.send(BrakeCarriage(carriage=braked.carriage, force_n=force, released=gives_way))
+            self._world.host.send(BrakeCarriage(carriage=braked.carriage, force_n=force, released=is_loose))
         else:
             self._world.host.send(BrakeLegs(platform=braked.platform, force_n=force))
 

@@ -76,11 +76,11 @@ class LiveScene:
         changed = gone | {name for name, one in now.items() if before.get(name) != one}
         placed = {one.name: one for one in arms}
         moved = {one.name for one in self._base.arms if placed.get(one.name, one.placement) != one.placement}
-        standing = tuple(
+        placed_arms = tuple(
             msgspec.structs.replace(one, placement=placed[one.name]) if one.name in moved else one
             for one in self._base.arms
         )
-        self._base = msgspec.structs.replace(self._base, obstacles=obstacles, arms=standing)
+        self._base = msgspec.structs.replace(self._base, obstacles=obstacles, arms=placed_arms)
         self._parts = frozenset(parts)
         self._tracked.forget(gone)
         self._removed -= changed

@@ -27,6 +27,7 @@ from states.equipment.linear_unit_types import (
     place_words,
     require_one_place,
 )
+from states.equipment.switch_brakes import switch_brakes
 from states.motion.line_duration import line_duration_s
 from states.motion.motion_target import RobotName
 
@@ -157,7 +158,7 @@ class PullBase(State, frozen=True, kw_only=True):
             return reading.scale_m
         held = compose_poses(invert_pose(reading.base), tool)
         back = zip(pull.start.xyz, held.xyz, pull.along, strict=True)
-        return pull.start_m + sum((before - now) * way for before, now, way in back)
+        return pull.start_m + sum((before - now) * along for before, now, along in back)
 
     async def _approach(self, ctx: Context, pull: BasePull) -> tuple[Cause | None, float]:
         """Pull to the goal and correct; return why the arm did not pull, and where the base is measured."""
@@ -171,7 +172,7 @@ class PullBase(State, frozen=True, kw_only=True):
             missing_m = pull.goal_m - measured_m
             if abs(missing_m) < self.tolerance_m / 5:
                 break
-            x, y, z = (xyz - _GAIN * missing_m * way for xyz, way in zip(target.xyz, pull.along, strict=True))
+            x, y, z = (at - _GAIN * missing_m * along for at, along in zip(target.xyz, pull.along, strict=True))
             start, target = target, replace(target, xyz=(x, y, z))
         return None, measured_m
 
@@ -187,16 +188,7 @@ class PullBase(State, frozen=True, kw_only=True):
         return goal_cause(what, line, end, to=self.robot, where=ctx.path, kind=self.state_name)
 
     async def _switch(self, ctx: Context, position: str) -> Cause | None:
-        """Move the device to a position of its brakes; return why it is not there."""
-        goal = device_moves.MoveDevice(position=position)
-        end = await ctx.perform(goal, to=self.device)
-        what, result = f"{self.device} did not move to {position}", end.result
-        if end.status != "succeeded" or result is None or result.ended == "canceled":
-            return goal_cause(what, goal, end, to=self.device, where=ctx.path, kind=self.state_name)
-        if result.ended in ("reached", "timed"):
-            return None
-        reason = Cause(message=result.reason or result.ended, where=goal.address(self.device))
-        return wrap_cause(what, reason, where=ctx.path, kind=self.state_name)
+        return await switch_brakes(ctx, self.device, position, kind=self.state_name)
 
     def _cause(self, because: Cause | None, ctx: Context) -> Cause:
         what = f"{self.robot} was not pulled to {place_words(self.place, self.place_m)}"

@@ -53,7 +53,7 @@ from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.fingerprint import fingerprint
 from robots.sim.physics.physics import Physics
 
-_Followed = MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | BrakeCarriage | SwitchToolLock
+_SceneCommand = MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | BrakeCarriage | SwitchToolLock
 _REST_RAD_S = 0.01
 
 
@@ -215,7 +215,7 @@ class Simulation:
         self._bonds.keep_apart(placed.away)
         return placed
 
-    def _follow(self, command: _Followed) -> None:
+    def _follow(self, command: _SceneCommand) -> None:
         match command:
             case DriveAxis():
                 self._axes.drive(command)

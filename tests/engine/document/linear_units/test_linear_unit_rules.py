@@ -39,7 +39,7 @@ devices:
 """
 
 
-def bench(folder: Path, *changes: tuple[str, str], more: str = "") -> Cell:
+def unit_cell(folder: Path, *changes: tuple[str, str], more: str = "") -> Cell:
     """Return the cell with a linear unit whose text is changed."""
     text = CELL
     for old, new in changes:
@@ -50,15 +50,15 @@ def bench(folder: Path, *changes: tuple[str, str], more: str = "") -> Cell:
 
 
 def test_a_robot_stands_on_the_carriage_with_what_that_carries(tmp_path: Path) -> None:
-    device = bench(tmp_path).document.devices["rail"]
+    device = unit_cell(tmp_path).document.devices["rail"]
     unit = device.linear_unit
     assert unit is not None
     assert (device.moved_fixtures, device.braked) == (("carriage", "box"), unit)
-    assert unit.direction(bench(tmp_path).document.fixtures["carriage"].at.pose()) == pytest.approx((0.0, 1.0, 0.0))
+    assert unit.direction(unit_cell(tmp_path).document.fixtures["carriage"].at.pose()) == pytest.approx((0.0, 1.0, 0.0))
 
 
 def test_a_place_says_by_how_much_it_is_beyond_the_travel(tmp_path: Path) -> None:
-    unit = bench(tmp_path).document.devices["rail"].linear_unit
+    unit = unit_cell(tmp_path).document.devices["rail"].linear_unit
     assert unit is not None
     assert unit.beyond_travel(-0.1) == ""
     assert unit.beyond_travel(-0.125) == "the carriage would be 25.0 mm beyond its travel of -100.0 … 800.0 mm"
@@ -92,7 +92,7 @@ def test_a_place_says_by_how_much_it_is_beyond_the_travel(tmp_path: Path) -> Non
 )
 def test_what_cannot_be_is_refused_at_its_place(tmp_path: Path, old: str, new: str, message: str, line: int) -> None:
     with pytest.raises(DocumentError) as raised:
-        bench(tmp_path, (old, new))
+        unit_cell(tmp_path, (old, new))
     where = raised.value.where
     assert message in raised.value.message
     assert isinstance(where, Position)
@@ -102,7 +102,7 @@ def test_what_cannot_be_is_refused_at_its_place(tmp_path: Path, old: str, new: s
 def test_another_robot_does_not_stand_on_the_carriage(tmp_path: Path) -> None:
     other = ("  arm: {model", "  other: {model: ur10, base: {frame: box}}\n  arm: {model")
     with pytest.raises(DocumentError, match="`other` stands on the carriage of `rail`, which moves"):
-        bench(tmp_path, other)
+        unit_cell(tmp_path, other)
 
 
 def test_a_module_has_no_linear_unit(tmp_path: Path) -> None:
