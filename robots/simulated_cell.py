@@ -18,11 +18,12 @@ from robots.arm.services.input_services import InputServices
 from robots.arm.services.numbered_signals import require_signals
 from robots.arm.services.output_services import OutputServices
 from robots.devices.simulated_devices import SimulatedDevices
+from robots.model.arm_base import ArmBase
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.transform import RigidTransform
 from robots.scene.docked_scene import with_modules
 from robots.scene.scene_builder import build_scene
-from robots.scene.sim_scene import ArmPlacement
+from robots.scene.sim_scene import ArmPlacement, SimScene
 from robots.sim.host.process_host import NewStopLine
 from robots.sim.ports.sim_tool_lock import SimToolLock
 from robots.sim.world.sim_robot import SimRobot
@@ -80,6 +81,7 @@ def new_world(
         if cameras is not None:
             world.modules.follow(cameras.take_scene)
         world.modules.follow(workspace.take_scene)
+        world.modules.follow(partial(_take_bases, arms))
         devices: tuple[SimRobot, ...] = (*((cameras,) if cameras is not None else ()), workspace)
         if cell.document.devices:
             devices += (SimulatedDevices(cell, world, clock=bus.clock),)
@@ -99,6 +101,14 @@ def new_world(
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line, cell=cell)
 
 
+def _take_bases(arms: tuple[ArmServer, ...], scene: SimScene) -> None:
+    """Have each arm stand where it is on its carriage."""
+    placements = {placement.name: placement for placement in scene.arms}
+    for arm in arms:
+        if placements[arm.name].on:
+            arm.take_placement(placements[arm.name])
+
+
 def _live_scene(world: SimWorld) -> LiveScene:
     # Imported here, so that Coal is loaded only when a scene is needed, not by every cell that is opened.
     from robots.planning.scene.cell_planning_scene import planning_scene
@@ -109,11 +119,11 @@ def _live_scene(world: SimWorld) -> LiveScene:
 
 
 def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, workspace: Workspace) -> ArmServer:
-    model = placement.robot()
+    model, base = placement.robot(), ArmBase(RigidTransform.from_pose(placement.base))
     return ArmServer(
         name=placement.name,
         model=model,
-        base=placement.base,
+        base=base,
         port=world.arm(placement.name),
         clock=clock,
         gripper=tool_server(world, placement.name, model.tool) if not placement.driven_tool else None,
@@ -121,16 +131,18 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, wor
         inputs=_inputs(cell, world, placement),
         frames=world.modules.frames,
         workspace=workspace,
-        tool_changer=_tool_changer(cell, world, placement, clock),
+        tool_changer=_tool_changer(cell, world, placement, base, clock),
     )
 
 
-def _tool_changer(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock) -> ToolChangerServer | None:
+def _tool_changer(
+    cell: Cell, world: SimWorld, placement: ArmPlacement, base: ArmBase, clock: Clock
+) -> ToolChangerServer | None:
     """Return the tool changer of an arm, None without one."""
     name, changer = placement.name, placement.tool_changer
     if changer is None:
         return None
-    port, kinematics = world.arm(name), ArmKinematics(placement.robot(), base=RigidTransform.from_pose(placement.base))
+    port, kinematics = world.arm(name), ArmKinematics(placement.robot(), base=base)
     lock = SimToolLock(arm=name, changer=changer, host=world.host)
 
     def place_of(tool: str) -> Pose | None:

@@ -18,11 +18,13 @@ from states.cell.plug_module import PlugModule
 from states.cell.reach import Reach
 from states.cell.unplug_module import UnplugModule
 from states.cell.withdraw import Withdraw
+from states.equipment.check_base import CheckBase
 from states.equipment.check_device import CheckDevice
 from states.equipment.check_hexapod import CheckHexapod
 from states.equipment.check_tool import CheckTool
 from states.equipment.move_device import MoveDevice
 from states.equipment.move_hexapod import MoveHexapod
+from states.equipment.pull_base import PullBase
 from states.equipment.put_tool import PutTool
 from states.equipment.select_tool_point import SelectToolPoint
 from states.equipment.take_tool import TakeTool
@@ -83,6 +85,7 @@ _STATES: tuple[type[State], ...] = (
     Attach,
     CallService,
     Check,
+    CheckBase,
     CheckDevice,
     CheckHexapod,
     CheckHeld,
@@ -124,6 +127,7 @@ _STATES: tuple[type[State], ...] = (
     PlugModule,
     PressAlongDmp,
     Publish,
+    PullBase,
     PutObstacle,
     PutTool,
     Reach,

@@ -27,17 +27,17 @@ CellNameKind = str
 _KINDS = frozenset((
     "robot", "tool", "link", "output", "input", "pwm_output", "part", "person", "camera", "detector", "label", "frame",
     "arm_frame", "body", "obstacle", "scene_part", "device", "position", "hexapod_pose", "module", "connector",
-    "planner", "topic", "bus_topic", "skill", "controller", "equipment", "changeable_tool", "tool_changer",
-    "tool_point",
+    "planner", "topic", "unit_place", "bus_topic", "skill", "controller", "equipment", "changeable_tool",
+    "tool_changer", "tool_point",
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `pwm_output` (`lights/lamp`) to equipment, `label` (`eye/plate`) to a
-camera with a detector, `position` (`vice/closed`) and `hexapod_pose` to a device, `tool_point` (`probe/tip`) to a
-tool of a tool changer. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of the cell's view;
-those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the planning scene,
-to which behaviors add. `tool_changer` is a robot that has one, `changeable_tool` a part that it takes. `topic` is
-one that the cell document declares. `controller` is a robot or `equipment`: both have outputs and inputs.
-`bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
+camera with a detector, `position` (`vice/closed`) `hexapod_pose` and `unit_place` to a device, `tool_point`
+(`probe/tip`) to a tool of a tool changer. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of
+the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
+planning scene, to which behaviors add. `tool_changer` is a robot that has one, `changeable_tool` a part that it
+takes. `topic` is one that the cell document declares. `controller` is a robot or `equipment`: both have outputs and
+inputs. `bus_topic` is any topic, `skill` any service or action: only an open cell knows those."""
 
 _WORDS: Mapping[str, str] = {
     "detector": "camera that detects",
@@ -50,11 +50,13 @@ _WORDS: Mapping[str, str] = {
     "controller": "robot or equipment",
     "hexapod_pose": "pose",
     "pwm_output": "PWM output",
+    "unit_place": "place",
 }
 _OWNED = frozenset[CellNameKind]((
-    "tool", "link", "output", "input", "pwm_output", "label", "position", "hexapod_pose", "tool_point",
+    "tool", "link", "output", "input", "pwm_output", "label", "position", "hexapod_pose", "unit_place",
+    "tool_point",
 ))  # fmt: skip
-_OF_PATHS = frozenset[CellNameKind](("position", "hexapod_pose", "tool_point"))
+_OF_PATHS = frozenset[CellNameKind](("position", "hexapod_pose", "unit_place", "tool_point"))
 """Those of them whose owner may stand on a module: `vice/jaws/closed`."""
 _GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
 _WORLD, _OCCUPANCY = "world", "occupancy"
@@ -212,6 +214,11 @@ def cell_names(cell: Cell) -> CellNames:
             f"{name}/{pose}"
             for name, device in document.devices.items()
             for pose in (device.hexapod.poses if device.hexapod is not None else ())
+        ),
+        "unit_place": frozenset(
+            f"{name}/{place}"
+            for name, device in document.devices.items()
+            for place in (device.linear_unit.places if device.linear_unit is not None else ())
         ),
         "tool_point": frozenset(
             f"{name}/{point}"

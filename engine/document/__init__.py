@@ -41,6 +41,7 @@ from engine.document.docking import cell_as_docked, cell_at_start, docks_at_star
 from engine.document.duration import seconds
 from engine.document.expression.expression import Template, compile_template
 from engine.document.hexapods import HexapodSpec, beyond_limits, leg_lengths_m, path_beyond_limits
+from engine.document.linear_units import LinearScale, LinearUnitSpec
 from engine.document.loader import (
     BehaviorSurvey,
     CircularReference,
@@ -99,6 +100,8 @@ __all__ = [
     "Jitter",
     "KeySignature",
     "LightBarrier",
+    "LinearScale",
+    "LinearUnitSpec",
     "MachineSpec",
     "Module",
     "MujocoWorld",

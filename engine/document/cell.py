@@ -40,6 +40,7 @@ from engine.document.device_pins import require_device_pins
 from engine.document.document_kind import require_kind
 from engine.document.equipment import Equipment, EquipmentSpec, load_pins
 from engine.document.hexapods.hexapod_rules import require_hexapods
+from engine.document.linear_units.linear_unit_rules import require_linear_units
 from engine.document.module_document import Module
 from engine.document.parameter_spec import ParameterSpec
 from engine.document.placement import Name
@@ -268,8 +269,9 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     require_topics(document.topics, source, owners={**on_bus, **dict.fromkeys(document.equipment, "equipment")})
     taken = {**_bodies(document), **dict.fromkeys((*document.people, *document.unknown_bodies), "body")}
     require_frames(document.frames, source, fixtures=document.fixtures, uses=document.uses_of_frames(), taken=taken)
-    uses = document.uses_of_frames()
-    require_hexapods(document.devices, source, fixtures=document.fixtures, frames=document.frames, uses=uses)
+    fixtures, frames, uses = document.fixtures, document.frames, tuple(document.uses_of_frames())
+    require_hexapods(document.devices, source, fixtures=fixtures, frames=frames, uses=uses)
+    require_linear_units(document.devices, source, robots=document.robots, fixtures=fixtures, frames=frames, uses=uses)
     carried = _items_on_modules(written, document, source, modules) if modules else {}
     pins = load_pins(document.equipment, source, folder=file.parent, taken=_namespaces(document))
     require_device_pins(

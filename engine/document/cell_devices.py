@@ -17,6 +17,7 @@ from engine.document.cell_bodies import Fixture
 from engine.document.cell_bonds import BondKind
 from engine.document.duration import Duration
 from engine.document.hexapods.hexapod_spec import HexapodSpec, placed_hexapod
+from engine.document.linear_units.linear_unit_spec import LinearUnitSpec
 from engine.document.placement import Name, PositionXyz
 from engine.document.text.decoding import StrictModel
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -148,13 +149,15 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
 
     With `equipment`, its outputs and sensors are the pins of that equipment with the same names. A module does not name
     equipment: the cell does that for all devices of the module.
-    With a `hexapod` it has the brakes of a passive platform, and the axes on it, such as clamps.
+    With a `hexapod` it has the brakes of a passive platform, and the axes on it, such as clamps. With a `linear_unit`
+    it has those of the carriage on which a robot of the cell stands.
     """
 
     description: str = ""
     equipment: Annotated[Name | None, Meta(description="Equipment of the cell on whose pins it is")] = None
     axes: dict[Name, DeviceAxis] = {}
     hexapod: HexapodSpec | None = None
+    linear_unit: LinearUnitSpec | None = None
     belts: dict[Name, DeviceBelt] = {}
     sensors: dict[Name, DeviceSensor] = {}
     positions: Annotated[dict[Name, DevicePosition], Meta(min_length=1)]
@@ -168,9 +171,14 @@ class DeviceSpec(StrictModel, frozen=True, kw_only=True):
 
     @property
     def moved_fixtures(self) -> tuple[str, ...]:
-        """The fixtures that move with it: those of its axes, and the platform with what it carries."""
+        """The fixtures that move with it: those of its axes, and platform or carriage with what that carries."""
         axes = tuple(axis.body for axis in self.axes.values())
-        return (*axes, *(self.hexapod.bodies if self.hexapod is not None else ()))
+        return (*axes, *(self.braked.bodies if self.braked is not None else ()))
+
+    @property
+    def braked(self) -> HexapodSpec | LinearUnitSpec | None:
+        """What its brakes hold, None without brakes."""
+        return self.hexapod if self.hexapod is not None else self.linear_unit
 
     @property
     def air_sensor(self) -> str:

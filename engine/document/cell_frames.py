@@ -47,6 +47,13 @@ def poses_in_world(frames: Mapping[str, FrameSpec], fixtures: Mapping[str, Fixtu
     return known
 
 
+def stands_on(frame: str, on: str, fixtures: Mapping[str, Fixture], frames: Mapping[str, FrameSpec]) -> bool:
+    """Return whether a frame or fixture is, or stands on, another one; frames lead to the world."""
+    while frame not in (WORLD, on):
+        frame = frames[frame].parent if frame in frames else fixtures[frame].at.frame
+    return frame == on
+
+
 def require_frames(
     frames: Mapping[str, FrameSpec],
     source: DocumentSource,

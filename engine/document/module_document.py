@@ -18,6 +18,7 @@ from engine.document.cell_frames import WORLD, FrameSpec, require_frames
 from engine.document.cell_perception import DepthCamera
 from engine.document.device_pins import refuse_equipment
 from engine.document.hexapods.hexapod_rules import require_hexapods
+from engine.document.linear_units.linear_unit_rules import refuse_linear_units
 from engine.document.placement import Name
 from engine.document.text.decoding import StrictModel, decode_document
 from engine.document.text.document_file import DocumentFile
@@ -86,6 +87,7 @@ def module_of_source(source: DocumentSource, *, file: Path) -> Module:
         taken={**dict.fromkeys(document.parts, "part"), **dict.fromkeys(document.cameras, "camera")},
         whole="module",
     )
+    refuse_linear_units(document.devices, source)
     uses = document.uses_of_frames()
     require_hexapods(document.devices, source, fixtures=document.fixtures, frames=document.frames, uses=uses)
     for path, frame in _parents(document):

@@ -71,14 +71,14 @@ class ReadDevice(Service[DeviceReading], frozen=True, kw_only=True):
 class DeviceFault(Message, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A fault of a simulated device; none with no field set. It stays until another is set.
 
-    `air: false`: nothing presses. `power: false`: no belt runs. `stuck`: this axis or belt stays where it is.
-    `sensor`: it says `reads` whatever is true. `brakes: false`: locked legs of its hexapod hold no more than released
-    ones.
+    `air: false`: nothing presses. `power: false`: no belt runs. `stuck`: this axis or belt stays where it is,
+    or `brakes` stay closed. `sensor`: it says `reads` whatever is true. `brakes: false`: locked legs of its hexapod, or
+    the locked carriage of its linear unit, hold no more than released ones.
     """
 
     air: bool = True
     power: bool = True
-    stuck: Annotated[str, Meta(description="Name of an axis or belt of the device")] = ""
+    stuck: Annotated[str, Meta(description="Name of an axis or belt of the device, or `brakes`")] = ""
     sensor: Annotated[str, Meta(description="Name of a sensor of the device")] = ""
     reads: bool = False
     brakes: bool = True

@@ -31,9 +31,11 @@ from robots.arm.services.inverse_kinematics_services import InverseKinematicsSer
 from robots.arm.services.output_services import OutputServices
 from robots.arm.waypoint_motions import WaypointMotions
 from robots.gripper.tool_server import ToolServer
+from robots.model.arm_base import ArmBase
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
 from robots.port import ArmPort, GraspCommand, Tolerance
+from robots.scene.sim_scene import ArmPlacement
 from robots.tool_changer import ToolChangerServer
 from robots.workspace.workspace import Workspace
 
@@ -54,7 +56,7 @@ class ArmServer:
     Args:
         name: Bus namespace and resource of the arm.
         model: Model of the arm.
-        base: Pose of the arm's base link in the world.
+        base: Pose of the arm's base link in the world, or what is shared of it.
         port: Commands the arm; connected by its owner before this robot is entered.
         clock: Virtual time plans inline, real time in a thread.
         gripper: The tool on the arm, if any; served and stopped together with it.
@@ -72,7 +74,7 @@ class ArmServer:
         *,
         name: str,
         model: RobotModel,
-        base: Pose,
+        base: Pose | ArmBase,
         port: ArmPort,
         clock: Clock,
         gripper: ToolServer | None = None,
@@ -86,7 +88,7 @@ class ArmServer:
         self._runner = runner = MotionRunner(
             name=name,
             model=model,
-            base=RigidTransform.from_pose(base),
+            base=base if isinstance(base, ArmBase) else ArmBase(RigidTransform.from_pose(base)),
             port=port,
             clock=clock,
             tolerance=tolerance or Tolerance(),
@@ -96,6 +98,7 @@ class ArmServer:
         self._gripper = gripper
         self._tool_changer = tool_changer
         self._describe: Callable[[], None] = _no_operation
+        self._described = runner.frames.base.to_pose(WORLD)
         self.outputs = outputs
         self.inputs = inputs
         self._report = report = ArmStatusPublisher(runner)
@@ -148,6 +151,7 @@ class ArmServer:
     def description(self) -> RobotDescription:
         """Return the description of this arm: limits, base pose and URDF text."""
         model, limits = self._runner.model, self._runner.model.limits
+        self._described = self._runner.frames.base.to_pose(WORLD)
         changed = self._tool_changer.tool if self._tool_changer is not None else ""
         return RobotDescription(
             name=self.name,
@@ -158,7 +162,7 @@ class ArmServer:
             upper_rad=limits.upper_rad,
             velocity_rad_s=limits.velocity_rad_s,
             acceleration_rad_s2=limits.acceleration_rad_s2,
-            base=self._runner.frames.base.to_pose(WORLD),
+            base=self._described,
             tool_frame=f"{self.name}/{model.tool_link}",
             licence=model.licence,
             effort_nm=limits.effort_nm,
@@ -168,6 +172,15 @@ class ArmServer:
             tool_licence=model.tool.licence if model.tool is not None else "",
             calibration=model.calibration,
         )
+
+    def take_placement(self, placement: ArmPlacement) -> None:
+        """Stand where the cell has the base now; everything that computes with this arm follows."""
+        frames, stand = self._runner.frames, self._runner.kinematics.stand
+        frames.loose = placement.loose
+        if placement.base != stand.pose.to_pose(WORLD):
+            stand.stand_at(RigidTransform.from_pose(placement.base))
+        if not placement.loose and placement.base != self._described:
+            self._describe()
 
     def grips(self) -> dict[str, GraspCommand]:
         """Return the grasp command that the gripper executes or holds, by the gripper's name; empty without one."""

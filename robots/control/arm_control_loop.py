@@ -79,6 +79,8 @@ class ArmControlLoop:
             joints=model.arm_joints, limits=limits, touching=self._felt, settling=self._is_settling
         )
         self._kinematics = kinematics
+        self.stand = kinematics.stand
+        """Where the base stands, as this loop knows it."""
         self._dynamics = dynamics = ArmDynamics(model, base=kinematics.base, gravity_m_s2=gravity_m_s2)
         # Determines the joint damping.
         self._inertia = np.diag(dynamics.mass_matrix(np.array(model.home_rad))).copy()

@@ -7,14 +7,16 @@ from collections.abc import Mapping
 import numpy as np
 
 from engine.bus import Holder
-from engine.document import DeviceAxis, DeviceSensor, DeviceSpec, LightBarrier, SlideAxis
+from engine.document import DeviceAxis, DeviceSensor, DeviceSpec, LightBarrier, LinearUnitSpec, SlideAxis
 from engine.errors import RobotError
 from engine.messages import Pose
 from robots.devices.light_barrier import is_interrupted
 from robots.model.transform import RigidTransform
-from robots.sim.commands.world_commands import BrakeLegs, DriveAxis
+from robots.sim.commands.world_commands import BrakeCarriage, BrakeLegs, DriveAxis
 from robots.sim.world.sim_world import SimWorld
 
+BRAKES = "brakes"
+"""What is `stuck` where brakes stay closed whatever their output is."""
 _BEFORE_RAD = 0.5
 
 
@@ -86,15 +88,27 @@ class SimulatedDevice:
             back = self.outputs[belt.output_back] if belt.output_back is not None else False
             runs = (float(self.outputs[belt.output]) - float(back)) * self.power
             self._world.host.send(DriveAxis(fixture=belt.body, direction=runs, locked=name in self.stuck))
-        hexapod = self._device.hexapod
-        if hexapod is not None:
-            force = hexapod.friction_n if self.released or self.slipping else hexapod.holding_n
-            self._world.host.send(BrakeLegs(platform=hexapod.platform, force_n=force))
+        braked = self._device.braked
+        if braked is None:
+            return
+        is_loose = self.released or self.slipping
+        force = braked.friction_n if is_loose else braked.holding_n
+        if isinstance(braked, LinearUnitSpec):
+            self._world.host.send(BrakeCarriage(carriage=braked.carriage, force_n=force, released=is_loose))
+        else:
+            self._world.host.send(BrakeLegs(platform=braked.platform, force_n=force))
 
     @property
     def released(self) -> bool:
-        """Whether the brakes of its hexapod are released: they are closed by springs, and opened by air."""
-        return self._device.hexapod is not None and self.air and self.outputs[self._device.hexapod.brakes]
+        """Whether its brakes are released: they are closed by springs, and opened by air unless they are stuck."""
+        braked = self._device.braked
+        return braked is not None and self.air and BRAKES not in self.stuck and self.outputs[braked.brakes]
+
+    @property
+    def loose_carriage(self) -> str:
+        """The carriage of its linear unit while that is meant to move, empty else."""
+        unit = self._device.linear_unit
+        return unit.carriage if unit is not None and self.outputs[unit.brakes] else ""
 
     @property
     def bodies(self) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
+from random import Random
 from types import TracebackType
 from typing import Self
 
@@ -11,7 +12,7 @@ import msgspec
 
 from engine.bus import SkillBus
 from engine.clock import Clock
-from engine.document import Cell
+from engine.document import Cell, LinearUnitSpec
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
@@ -19,8 +20,9 @@ from engine.skills.device_moves import DeviceFault, SimulateDeviceFault
 from engine.skills.switch_result import SwitchResult
 from robots.devices.device_server import DeviceMemo, DeviceServer, known_at
 from robots.devices.hexapod_server import HexapodServer
+from robots.devices.linear_unit_server import LinearUnitServer
 from robots.devices.pins_of_simulation import PinFollower
-from robots.devices.simulated_device import SimulatedDevice
+from robots.devices.simulated_device import BRAKES, SimulatedDevice
 from robots.model.transform import RigidTransform
 from robots.port import GraspCommand
 from robots.scene.sim_scene import SimScene
@@ -63,10 +65,14 @@ class SimulatedDevices:
         self._devices = cell.document.devices
         hexapods = {name: one.hexapod for name, one in self._devices.items() if one.hexapod is not None}
         platforms = {body: one.platform for one in hexapods.values() for body in one.carries}
+        units = {name: one.linear_unit for name, one in self._devices.items() if one.linear_unit is not None}
+        platforms |= {body: one.carriage for one in units.values() for body in one.carries}
+        self._carriages = frozenset(body for one in units.values() for body in one.bodies)
         self._ports = {
             name: SimulatedDevice(device, world, platforms=platforms) for name, device in self._devices.items()
         }
         self._hexapods = [HexapodServer(name, one, pose_of=self._ports[name].pose) for name, one in hexapods.items()]
+        self._units = [self._unit_server(name, unit) for name, unit in units.items()]
         self._servers = {
             name: DeviceServer(
                 name, device, self._ports[name], clock=clock, is_at=self._is_at, moved=self._publish_poses
@@ -87,6 +93,8 @@ class SimulatedDevices:
         self._bus: SkillBus | None = None
         self._published: dict[str, Pose] = {}
         self._framed: dict[str, Pose] = {}
+        self._stood: dict[str, Pose] = {}
+        self._loose: frozenset[str] = frozenset()
         self._following: asyncio.Task[None] | None = None
         self.status = DeviceStatus.DISCONNECTED
         world.modules.watch(self._modules_changed)
@@ -94,7 +102,7 @@ class SimulatedDevices:
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills of each device, and the service that breaks it."""
         self._bus = bus
-        for served in (*self._servers.values(), *self._hexapods):
+        for served in (*self._servers.values(), *self._hexapods, *self._units):
             served.register(bus)
         for name, device in self._devices.items():
             if device.equipment is None or self._cell.equipment[device.equipment].simulated:
@@ -161,7 +169,7 @@ class SimulatedDevices:
 
     async def __aenter__(self) -> Self:
         self._drive()
-        if self._hexapods or self._pin_followers:
+        if self._hexapods or self._units or self._pin_followers:
             self._following = asyncio.create_task(self._follow(), name="following moved fixtures")
         self.status = DeviceStatus.READY
         return self
@@ -177,6 +185,18 @@ class SimulatedDevices:
             await asyncio.wait([self._following])
         self.status = DeviceStatus.DISCONNECTED
 
+    def _unit_server(self, name: str, unit: LinearUnitSpec) -> LinearUnitServer:
+        world = self._world
+        return LinearUnitServer(
+            name,
+            unit,
+            home=self._cell.fixtures[unit.carriage].at.pose(),
+            pose_of=self._ports[name].pose,
+            arm=lambda: next(arm for arm in world.modules.scene.arms if arm.name == unit.robot),
+            frames=world.modules.frames,
+            noise=Random(f"{world.modules.scene.seed}/{name}/scale"),  # noqa: S311
+        )
+
     def _drive(self) -> None:
         for port in self._ports.values():
             port.drive()
@@ -186,7 +206,7 @@ class SimulatedDevices:
 
     def _modules_changed(self, _scene: SimScene) -> None:
         """Take note that moved fixtures are published where the cell document places them."""
-        self._published, self._framed = {}, {}
+        self._published, self._framed, self._stood = {}, {}, {}
         self._publish_poses()
 
     async def _follow(self) -> None:
@@ -207,20 +227,24 @@ class SimulatedDevices:
         if _differ(present, self._framed, by_m=_FRAME_MOVED_M):
             self._framed = present
             self._world.modules.frames_moved(present)
-        if _differ(present, self._published, by_m=_MOVED_M):
-            self._published = present
-            self._world.modules.fixtures_moved(present)
+        loose = frozenset(filter(None, (port.loose_carriage for port in self._ports.values())))
+        carriages = {name: pose for name, pose in present.items() if name in self._carriages}
+        # Planners know the base of an arm as exactly as frames.
+        moved = _differ(present, self._published, by_m=_MOVED_M) or _differ(carriages, self._stood, by_m=_FRAME_MOVED_M)
+        if moved or loose != self._loose:
+            self._published, self._stood, self._loose = present, carriages, loose
+            self._world.modules.fixtures_moved(present, loose=loose)
 
     def _fault_service(self, name: str) -> Callable[[SimulateDeviceFault], object]:
         async def break_device(request: SimulateDeviceFault) -> SwitchResult:
             port, device = self._ports[name], self._devices[name]
             fault = request.fault
-            moving = {**device.axes, **device.belts}
+            moving = [*device.axes, *device.belts, *((BRAKES,) if device.braked is not None else ())]
             for word, known in ((fault.stuck, moving), (fault.sensor, device.sensors)):
                 if word and word not in known:
                     return SwitchResult(success=False, message=f"{name} has no {word}: it has {', '.join(known)}")
-            if not fault.brakes and device.hexapod is None:
-                return SwitchResult(success=False, message=f"{name} has no hexapod, and so no brakes")
+            if not fault.brakes and device.braked is None:
+                return SwitchResult(success=False, message=f"{name} has no hexapod and no linear unit: no brakes")
             port.air, port.power = fault.air, fault.power
             port.stuck = {fault.stuck} if fault.stuck else set()
             port.wrong = {fault.sensor: fault.reads} if fault.sensor else {}

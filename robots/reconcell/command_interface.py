@@ -242,7 +242,7 @@ class CommandInterface:
             line, data.line_goal = data.line_goal, None
             x, y, z = line.position_m
             pose = Pose(xyz=(x, y, z), xyzw=from_wire(line.orientation, self._options.quaternion))
-            self._start(mode, CartLinTask(pose=compose_poses(self._arm.base, pose), duration_s=line.duration_s))
+            self._start(mode, CartLinTask(pose=compose_poses(self._base, pose), duration_s=line.duration_s))
         elif mode is ControlMode.DIRECT and data.set_point is not None:
             point, data.set_point = data.set_point, None
             self.commands.start_direct(point.joints)
@@ -287,7 +287,7 @@ class CommandInterface:
             joint = data.primitives["joint_dmp"].joint_dmp()
             self._start(mode, JointDMP(dmp=joint), a_x=joint.a_x)
             return
-        cart = data.primitives["cart_dmp"].cart_dmp(base=self._arm.base, order=self._options.quaternion)
+        cart = data.primitives["cart_dmp"].cart_dmp(base=self._base, order=self._options.quaternion)
         if mode is ControlMode.CART_DMP:
             self._start(mode, CartDMP(dmp=cart), a_x=cart.a_x)
             return
@@ -315,6 +315,12 @@ class CommandInterface:
                 raise PacketRefused(
                     "out of range", f"{name} at {value:.4g} rad", hint=f"from {lower:.4g} to {upper:.4g} rad"
                 )
+
+    @property
+    def _base(self) -> Pose:
+        """Where the base stands in the world now: an arm may pull it along."""
+        latest = self._bus.find_topic(f"{self._arm.name}/description").latest
+        return latest.base if isinstance(latest, RobotDescription) else self._arm.base
 
     def _set_outputs(self, bits: int) -> None:
         name = f"{self._arm.name}/digital_outputs"

@@ -48,7 +48,7 @@ class StateBroadcast:
     ) -> None:
         self._bus = bus
         self._arm = description.name
-        self._to_base = invert_pose(description.base)
+        self._description = description
         self._interface = interface
         self._order: QuaternionOrder = order
         self._set_point: _SetPoint | None = None
@@ -77,7 +77,9 @@ class StateBroadcast:
         except FlexcellError:
             return None
         desired = self._with_velocity(set_point)
-        tool = compose_poses(self._to_base, pose)
+        # Where it stands now: an arm may pull its base along.
+        to_base = invert_pose((self._latest("description", RobotDescription) or self._description).base)
+        tool = compose_poses(to_base, pose)
         x, y, z, w = pose.xyzw
         outputs, inputs = self._latest("digital_outputs", DigitalOutputs), self._latest("digital_inputs", DigitalInputs)
         return RobotStatePacket(
@@ -88,7 +90,7 @@ class StateBroadcast:
             position_m=tool.xyz,
             orientation=to_wire(tool.xyzw, self._order),
             sensor_wrench=_turned(wrench, (-x, -y, -z, w)),
-            tool_wrench=_turned(wrench, self._to_base.xyzw),
+            tool_wrench=_turned(wrench, to_base.xyzw),
             outputs=_bits(outputs),
             inputs=_bits(inputs),
         )

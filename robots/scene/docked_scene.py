@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from msgspec.structs import replace
 
 from engine.document import Cell, CellDocument, docks_at_start
-from robots.scene.sim_scene import ModuleBodies, SimScene
+from engine.messages import Pose
+from engine.messages.pose_algebra import compose_poses, invert_pose
+from robots.scene.sim_scene import ArmPlacement, ModuleBodies, SimScene
 
 
 def with_modules(scene: SimScene, cell: Cell) -> SimScene:
@@ -44,3 +46,27 @@ def docked_scene(whole: SimScene, document: CellDocument, *, away: Collection[st
         parts=tuple(part for part in whole.parts if part.name not in away),
         frames=document.fixed_frames,
     )
+
+
+def with_moved_fixtures(
+    scene: SimScene, poses: Mapping[str, Pose], *, whole: SimScene, loose: Collection[str] = ()
+) -> SimScene:
+    """Return a scene with fixtures where they are now, and the bases of the arms that stand on them.
+
+    Args:
+        scene: What is in the world.
+        poses: The poses in the world of the fixtures that have moved.
+        whole: The scene with everything, as it was built.
+        loose: The carriages that are released.
+    """
+    fixtures = tuple(replace(one, pose=poses.get(one.name, one.pose)) for one in scene.fixtures)
+    home = {one.name: one.pose for one in whole.fixtures if one.carriage is not None}
+    first = {arm.name: arm.base for arm in whole.arms}
+
+    def moved(arm: ArmPlacement) -> ArmPlacement:
+        if arm.on not in poses:
+            return arm
+        stands = compose_poses(invert_pose(home[arm.on]), first[arm.name])
+        return replace(arm, base=compose_poses(poses[arm.on], stands), loose=arm.on in loose)
+
+    return replace(scene, fixtures=fixtures, arms=tuple(moved(arm) for arm in scene.arms))

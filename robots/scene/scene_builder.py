@@ -13,17 +13,20 @@ from engine.document import (
     Fixture,
     HexapodSpec,
     HingeAxis,
+    LinearUnitSpec,
     Person,
     RobotSpec,
     UnknownBody,
 )
 from engine.errors import CellError
+from engine.messages import Pose
 from robots.model.registry import model_location
 from robots.scene.joined_bodies import drawn_bonds, part_poses
 from robots.scene.sim_scene import (
     ArmPlacement,
     AxisBody,
     BeltBody,
+    CarriageBody,
     FixtureBody,
     HexapodBody,
     PartBody,
@@ -49,6 +52,8 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
     world = document.world
     if world is None:
         raise CellError("the cell has no world to simulate", where=document.cell, hint="add `world: {kind: mujoco}`")
+    units = (device.linear_unit for device in document.devices.values())
+    carriages = {unit.robot: unit.carriage for unit in units if unit is not None}
     return SimScene(
         step_s=world.step_s,
         gravity=world.gravity,
@@ -57,7 +62,10 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
         engine_silence_s=world.engine_silence_s,
         world_silence_s=world.world_silence_s,
         start_limit_s=world.start_limit_s,
-        arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items()),
+        arms=tuple(
+            msgspec.structs.replace(_arm(name, robot, resolve), on=carriages.get(name, ""))
+            for name, robot in document.robots.items()
+        ),
         fixtures=_fixtures(document),
         parts=tuple(_parts(document, seed)),
         bonds=drawn_bonds(document.bonds, seed=seed),
@@ -84,13 +92,28 @@ def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
     for belt in (belt for device in document.devices.values() for belt in device.belts.values()):
         surface = BeltBody(along=belt.along, speed_m_s=belt.speed_m_s, acceleration_m_s2=belt.acceleration_m_s2)
         bodies[belt.body] = msgspec.structs.replace(bodies[belt.body], belt=surface, jaw_friction=belt.friction)
-    for hexapod in (device.hexapod for device in document.devices.values()):
-        if hexapod is not None:
-            platform = bodies[hexapod.platform]
-            bodies[hexapod.platform] = msgspec.structs.replace(platform, hexapod=_hexapod(hexapod))
-            for name in hexapod.carries:
-                bodies[name] = msgspec.structs.replace(bodies[name], on=hexapod.platform)
+    for braked in (device.braked for device in document.devices.values()):
+        if braked is None:
+            continue
+        moved, *carried = braked.bodies
+        if isinstance(braked, LinearUnitSpec):
+            bodies[moved] = msgspec.structs.replace(bodies[moved], carriage=_carriage(braked))
+        else:
+            bodies[moved] = msgspec.structs.replace(bodies[moved], hexapod=_hexapod(braked))
+        for name in carried:
+            bodies[name] = msgspec.structs.replace(bodies[name], on=moved)
     return tuple(bodies.values())
+
+
+def _carriage(unit: LinearUnitSpec) -> CarriageBody:
+    return CarriageBody(
+        along=unit.direction(Pose(xyz=(0.0, 0.0, 0.0))),
+        travel_m=unit.travel_m,
+        mass_kg=unit.mass_kg,
+        friction_n=unit.friction_n,
+        damping_ns_m=unit.damping_ns_m,
+        holding_n=unit.holding_n,
+    )
 
 
 def _hexapod(hexapod: HexapodSpec) -> HexapodBody:

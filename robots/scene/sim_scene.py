@@ -20,6 +20,8 @@ from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 
 Rgba = tuple[float, float, float, float]
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
+LOOSE_HINT = "lock the brakes of its linear unit first"
+"""What to do about an arm whose base is loose."""
 
 
 class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
@@ -30,7 +32,8 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     simulates its body, with its fingers at rest, and neither commands it nor publishes its state. A `driven` arm has a
     driver too: the world places its body where the driver measures it, and simulates no motors. `digital_outputs` and
     `digital_inputs` are those of its controller, None for as many as the model has. With a `tool_changer` there is no
-    gripper: the arm takes parts that are tools.
+    gripper: the arm takes parts that are tools. What it stands `on` is a carriage, which moves its base; the base is
+    `loose` while the brakes of that carriage are released.
     """
 
     name: str
@@ -44,6 +47,8 @@ class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
     digital_outputs: int | None = None
     digital_inputs: int | None = None
     tool_changer: ToolChangerSpec | None = None
+    on: str = ""
+    loose: bool = False
 
     def robot(self) -> RobotModel:
         """Return the model of the arm with its tool.
@@ -101,6 +106,20 @@ class HexapodBody(msgspec.Struct, frozen=True, kw_only=True):
     holding_n: float
 
 
+class CarriageBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The slide of the carriage of a linear unit: along a unit vector in its frame, from 0, its pose in the scene.
+
+    It slips at `friction_n` while it is released and at `holding_n` braked.
+    """
+
+    along: Vector3
+    travel_m: tuple[float, float]
+    mass_kg: float
+    friction_n: float
+    damping_ns_m: float
+    holding_n: float
+
+
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
@@ -108,7 +127,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
     `skin_friction` with any other body. With an `axis` it is moved by a device, with a `belt` its surface is.
     `jaw_friction` is that of the surface of what a device presses with, or against, or carries with. With a `hexapod`
-    it is a platform on legs; what is `on` a platform is fixed to it, or has its axis on it.
+    it is a platform on legs; what is `on` a platform or a `carriage` is fixed to it, or has its axis on it.
     """
 
     name: str
@@ -124,13 +143,14 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     belt: BeltBody | None = None
     jaw_friction: float | None = None
     hexapod: HexapodBody | None = None
+    carriage: CarriageBody | None = None
     on: str = ""
     rgba: Rgba = GREY
 
     @property
     def moves(self) -> bool:
         """Whether its pose changes while the cell is open."""
-        return self.axis is not None or self.hexapod is not None or bool(self.on)
+        return any(one is not None for one in (self.axis, self.hexapod, self.carriage)) or bool(self.on)
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):

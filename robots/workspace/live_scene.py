@@ -14,6 +14,7 @@ from engine.wording import did_you_mean
 from robots.model.mechanics.link_names import link_names
 from robots.model.transform import RigidTransform
 from robots.planning.scene.planning_scene import AttachedPart, NamePair, PlanningScene, SceneArm
+from robots.scene.sim_scene import ArmPlacement
 from robots.workspace.grasped_parts import GraspedPart, ReleasedPart
 from robots.workspace.measured_poses import MeasuredPoses, PoseSource
 from robots.workspace.obstacle_validation import find_obstacle_fault
@@ -62,8 +63,10 @@ class LiveScene:
         self._reservations: dict[str, tuple[Row, ...]] = {}
         self.revision = 0
 
-    def take_base(self, obstacles: tuple[Obstacle, ...], *, parts: Collection[str]) -> frozenset[str]:
-        """Replace the fixtures and parts of the cell; return the names of all that came, went or moved.
+    def take_base(
+        self, obstacles: tuple[Obstacle, ...], *, parts: Collection[str], arms: Collection[ArmPlacement] = ()
+    ) -> frozenset[str]:
+        """Replace the fixtures and parts of the cell, and where `arms` stand; return the names of all that changed.
 
         What is known of those that went is forgotten: they come back as new.
         """
@@ -71,7 +74,14 @@ class LiveScene:
         now = {one.name: one for one in obstacles}
         gone = before.keys() - now.keys()
         changed = gone | {name for name, one in now.items() if before.get(name) != one}
-        self._base, self._parts = msgspec.structs.replace(self._base, obstacles=obstacles), frozenset(parts)
+        placed = {one.name: one for one in arms}
+        moved = {one.name for one in self._base.arms if placed.get(one.name, one.placement) != one.placement}
+        placed_arms = tuple(
+            msgspec.structs.replace(one, placement=placed[one.name]) if one.name in moved else one
+            for one in self._base.arms
+        )
+        self._base = msgspec.structs.replace(self._base, obstacles=obstacles, arms=placed_arms)
+        self._parts = frozenset(parts)
         self._tracked.forget(gone)
         self._removed -= changed
         for name in changed:
@@ -80,7 +90,7 @@ class LiveScene:
             self._held.pop(name, None)
             self._let_go.pop(name, None)
         self.revision += 1
-        return frozenset(changed)
+        return frozenset(changed | moved)
 
     @property
     def arms(self) -> int:

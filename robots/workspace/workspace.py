@@ -312,7 +312,7 @@ class Workspace:
 
         assert self._cell_scene is not None
         parts = tuple(part.name for part in self._cell_scene.parts)
-        changed = live.take_base(known_obstacles(self._cell_scene), parts=parts)
+        changed = live.take_base(known_obstacles(self._cell_scene), parts=parts, arms=self._cell_scene.arms)
         self._notify(changed | live.refresh())
 
     def _refresh(self, live: LiveScene) -> None:

@@ -18,6 +18,7 @@ from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context, Outcome, Skills, State, goal_cause
 from states.equipment.device_parameter_types import DeviceName
 from states.equipment.hexapod_error import AngleTolerance, HexapodError, HexapodPoseName, PositionTolerance
+from states.equipment.switch_brakes import switch_brakes
 from states.motion.line_duration import line_duration_s
 from states.motion.motion_target import RobotName
 
@@ -116,17 +117,7 @@ class MoveHexapod(State, frozen=True, kw_only=True):
         return None
 
     async def _switch(self, ctx: Context, position: str) -> Cause | None:
-        """Move the device to a position of its brakes; return why it is not there."""
-        goal = device_moves.MoveDevice(position=position)
-        end = await ctx.perform(goal, to=self.device)
-        what = f"{self.device} did not move to {position}"
-        result = end.result
-        if end.status != "succeeded" or result is None or result.ended == "canceled":
-            return goal_cause(what, goal, end, to=self.device, where=ctx.path, kind=self.state_name)
-        if result.ended in ("reached", "timed"):
-            return None
-        reason = Cause(message=result.reason or result.ended, where=goal.address(self.device))
-        return wrap_cause(what, reason, where=ctx.path, kind=self.state_name)
+        return await switch_brakes(ctx, self.device, position, kind=self.state_name)
 
     def _cause(self, because: Cause | None, ctx: Context) -> Cause:
         return wrap_cause(f"{self.device} was not moved to {self.pose}", because, where=ctx.path, kind=self.state_name)

@@ -58,6 +58,7 @@ DIFFERENT_FACTS: Mapping[str, str] = {
     "LearnCartDmp ~ LearnJointDmp": CARTESIAN,
     "LoopBlocked ~ LoopStall": "the event of a state that blocks; a block by anything, also outside a run",
     "MagnetResult ~ MagnetState": "how an action ended; a measurement",
+    "MoveHexapod ~ PullBase": "a pose with two tolerances; a place along a rail, of which the arm itself is moved",
     "Pose ~ PoseTarget": "a pose; a pose or the name of an entry",
     "PutObstacle ~ ToolShape": "a state; a body of a tool, with its mass",
     "PutTool ~ TakeTool": "one has a tool centre point; the other ends in a place",

@@ -7,7 +7,7 @@ from itertools import chain
 
 from engine.document.cell_bodies import Fixture
 from engine.document.cell_devices import DeviceSpec
-from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world
+from engine.document.cell_frames import FrameSpec, poses_in_world, stands_on
 from engine.document.hexapods.hexapod_geometry import beyond_limits
 from engine.document.hexapods.hexapod_spec import HexapodSpec
 from engine.document.text.yaml_source import DataPath, DocumentSource
@@ -52,7 +52,7 @@ def require_hexapods(
             raise DocumentError(message, where=source.position((*path, *inner)), hint=hint)
         platforms |= dict.fromkeys(hexapod.bodies, f"the hexapod `{name}`")
         for used, frame in used_frames:
-            if used[0] not in ("parts", "unknown_bodies") and _stands_on(frame, hexapod.platform, fixtures, frames):
+            if used[0] not in ("parts", "unknown_bodies") and stands_on(frame, hexapod.platform, fixtures, frames):
                 raise DocumentError(
                     f"`{used[1]}` stands on the platform of `{name}`, which moves",
                     where=source.position(used),
@@ -72,7 +72,7 @@ def _name_problems(
         yield ("platform",), "base and platform are the same fixture", "name the plate that moves"
     if hexapod.grip not in frames:
         yield ("grip",), f"there is no frame `{hexapod.grip}`", did_you_mean(hexapod.grip, frames)
-    elif not _stands_on(hexapod.grip, hexapod.platform, fixtures, frames):
+    elif not stands_on(hexapod.grip, hexapod.platform, fixtures, frames):
         yield ("grip",), f"`{hexapod.grip}` does not stand on the platform", f"give it `parent: {hexapod.platform}`"
     if hexapod.brakes not in device.outputs:
         yield ("brakes",), f"no step sets the output `{hexapod.brakes}`", did_you_mean(hexapod.brakes, device.outputs)
@@ -113,17 +113,10 @@ def _carry_problems(
     hexapod: HexapodSpec, fixtures: Mapping[str, Fixture], frames: Mapping[str, FrameSpec]
 ) -> Iterator[_Problem]:
     for index, one in enumerate(hexapod.carries):
-        if not _stands_on(one, hexapod.platform, fixtures, frames):
+        if not stands_on(one, hexapod.platform, fixtures, frames):
             hint = f"give it `at: {{frame: {hexapod.platform}}}`, or a frame that stands on it"
             yield ("carries", index), f"`{one}` does not stand on `{hexapod.platform}`", hint
     for one in fixtures:
-        if one not in hexapod.bodies and _stands_on(one, hexapod.platform, fixtures, frames):
+        if one not in hexapod.bodies and stands_on(one, hexapod.platform, fixtures, frames):
             hint = f"add it: `carries: [{', '.join((*hexapod.carries, one))}]`"
             yield (), f"`{one}` stands on `{hexapod.platform}` and would not move with it", hint
-
-
-def _stands_on(frame: str, platform: str, fixtures: Mapping[str, Fixture], frames: Mapping[str, FrameSpec]) -> bool:
-    """Return whether a frame or fixture is, or stands on, a platform."""
-    while frame not in (WORLD, platform):
-        frame = frames[frame].parent if frame in frames else fixtures[frame].at.frame
-    return frame == platform

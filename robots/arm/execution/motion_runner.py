@@ -21,6 +21,7 @@ from robots.arm.execution.arm_planner import ArmPlanner
 from robots.arm.execution.tool_frames import WORLD, ToolFrames
 from robots.arm.execution.warm_up import WarmUp
 from robots.arm.scene_queries.path_guard import PathGuard
+from robots.model.arm_base import ArmBase
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.model.robot_model import RobotModel
 from robots.model.transform import RigidTransform
@@ -68,7 +69,7 @@ class MotionRunner:
         *,
         name: str,
         model: RobotModel,
-        base: RigidTransform,
+        base: RigidTransform | ArmBase,
         port: ArmPort,
         clock: Clock,
         tolerance: Tolerance,
@@ -85,7 +86,7 @@ class MotionRunner:
         self._tool: tuple[Vector3, Quaternion] = NO_FRAME
         self._planner = self._new_planner()
         self.loading = WarmUp(name, self._planner.prepare)
-        self.frames = ToolFrames(arm=name, base_link=model.base_link, base=base, named=frames)
+        self.frames = ToolFrames(arm=name, base_link=model.base_link, base=self._at_link.stand, named=frames)
         self.status = DeviceStatus.DISCONNECTED
         self.reserved_for = ""
         self.activity = ""

@@ -9,8 +9,10 @@ import numpy as np
 from engine.errors import RobotError
 from engine.messages import Pose
 from engine.wording import did_you_mean
+from robots.model.arm_base import ArmBase
 from robots.model.transform import RigidTransform
 from robots.port import Array
+from robots.scene.sim_scene import LOOSE_HINT
 
 WORLD = "world"
 # Beyond any cell; larger values may overflow in calculations.
@@ -28,12 +30,19 @@ class ToolFrames:
     """
 
     def __init__(
-        self, *, arm: str, base_link: str, base: RigidTransform, named: Mapping[str, Pose] | None = None
+        self, *, arm: str, base_link: str, base: RigidTransform | ArmBase, named: Mapping[str, Pose] | None = None
     ) -> None:
         self._arm = arm
         self.base_frame = f"{arm}/{base_link}"
-        self.base = base
+        self._base = ArmBase.of(base)
         self._named: Mapping[str, Pose] = named if named is not None else {}
+        self.loose = False
+        """True while the base may move: then only poses in its own frame can be reached."""
+
+    @property
+    def base(self) -> RigidTransform:
+        """Pose of the base in the world now."""
+        return self._base.pose
 
     def axes(self, frame: str, *, tool: RigidTransform) -> Array:
         """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is the tool's pose."""
@@ -45,7 +54,7 @@ class ToolFrames:
         """Return the pose in the world.
 
         Raises:
-            RobotError: the frame is unknown, or the numbers are not a pose.
+            RobotError: the frame is unknown, the numbers are not a pose, or the base is loose and the frame is not its.
         """
         try:
             given = RigidTransform.from_pose(pose)
@@ -56,10 +65,16 @@ class ToolFrames:
             raise RobotError(
                 f"a coordinate of {farthest:.3g} m is out of reach", where=self._arm, hint="xyz is in meters"
             )
-        if pose.frame == WORLD:
-            return given
         if pose.frame == self.base_frame:
             return self.base.then(given)
+        if self.loose:
+            raise RobotError(
+                f"the base of {self._arm} is released, and the frame {pose.frame} is not on it",
+                where=self._arm,
+                hint=LOOSE_HINT,
+            )
+        if pose.frame == WORLD:
+            return given
         if pose.frame in self._named:
             return RigidTransform.from_pose(self._named[pose.frame]).then(given)
         raise RobotError(

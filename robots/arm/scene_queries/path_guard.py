@@ -21,6 +21,7 @@ from robots.motion.slow_section import slow_section
 from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.scene.sim_scene import LOOSE_HINT
 from robots.workspace.path_reservations import is_reserved
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
@@ -129,9 +130,16 @@ class PathGuard:
     async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
         workspace = self.workspace
+        scene = workspace.scene_for(self.arm)
+        if scene.arm(self.arm).placement.loose:
+            raise PathBlocked(
+                f"the base of {self.arm} is released: nobody knows where its path leads",
+                where=self.arm,
+                hint=LOOSE_HINT,
+            )
         return await workspace.planners.check_path(
             PathCheckRequest(
-                scene=self._allowing(workspace.scene_for(self.arm), rules.may_touch),
+                scene=self._allowing(scene, rules.may_touch),
                 arm=self.arm,
                 trajectory=trajectory,
                 from_s=from_s,

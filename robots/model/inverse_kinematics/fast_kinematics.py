@@ -13,6 +13,7 @@ from robots.model.inverse_kinematics.failure_reason import DescentAttempt
 from robots.model.inverse_kinematics.ideal_arm import IdealArm, ideal_arm
 from robots.model.inverse_kinematics.pose_match import PoseMatch
 from robots.model.mechanics.kinematics import ArmKinematics
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 # The compiled loops are imported inside the functions that run them: numba takes a third of a second to import,
@@ -104,16 +105,17 @@ class FastKinematics:
 
 
 def new_fast_kinematics(kinematics: ArmKinematics) -> FastKinematics:
-    """Return the prepared arm, created once per `kinematics`.
+    """Return the prepared arm, created once per `kinematics` and place of its base.
 
     Raises:
         CellError: the arm is not a serial chain of single joints.
     """
-    arm = _PREPARED.get(kinematics)
-    if arm is None:
-        chain = chain_of(kinematics)
-        arm = FastKinematics(chain=chain, ideal=ideal_arm(chain), analytic=new_analytic_solver(chain))
-        _PREPARED[kinematics] = arm
+    base, known = kinematics.base, _PREPARED.get(kinematics)
+    if known is not None and known[0] is base:
+        return known[1]
+    chain = chain_of(kinematics)
+    arm = FastKinematics(chain=chain, ideal=ideal_arm(chain), analytic=new_analytic_solver(chain))
+    _PREPARED[kinematics] = (base, arm)
     return arm
 
 
@@ -122,4 +124,4 @@ def is_solved(attempt: DescentAttempt) -> bool:
     return attempt.distance_m <= POSITION_TOLERANCE_M and attempt.angle_rad <= ANGLE_TOLERANCE_RAD
 
 
-_PREPARED: WeakKeyDictionary[ArmKinematics, FastKinematics] = WeakKeyDictionary()
+_PREPARED: WeakKeyDictionary[ArmKinematics, tuple[RigidTransform, FastKinematics]] = WeakKeyDictionary()

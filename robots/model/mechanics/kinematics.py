@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from robots.model.arm_base import ArmBase
 from robots.model.mechanics.pinocchio_model import arm_model, pin
 from robots.model.robot_model import JointLimits, RobotModel
 from robots.model.transform import RigidTransform, product
@@ -21,23 +22,32 @@ class ArmKinematics:
 
     Args:
         model: The arm; its tool's joints are locked at 0.
-        base: Pose of the model's base link in the world.
+        base: Pose of the model's base link in the world; an `ArmBase` is shared with others, and may move.
         tool: The tool centre point in the frame of the model's tool link; by default its origin.
     """
 
     def __init__(
-        self, model: RobotModel, *, base: RigidTransform, tool: RigidTransform | None = None, solver: Any = None
+        self,
+        model: RobotModel,
+        *,
+        base: RigidTransform | ArmBase,
+        tool: RigidTransform | None = None,
+        solver: Any = None,
     ) -> None:
         self.model = model
-        self.base = base
+        self.stand = ArmBase.of(base)
+        """Where its base stands, shared with all instances that were made from this one."""
         self.tool = tool or _AT_THE_LINK
         self._solver = arm_model(model) if solver is None else solver
         self._data = self._solver.createData()
         self._tool = self._solver.getFrameId(model.tool_link)
         self._offset = _Offset(self._solver.frames[self._tool], self.tool) if tool is not None else None
-        self._rotation = base.rotation
-        self._turn = np.kron(np.eye(2), self._rotation)
         self._armature = np.diag(model.armature_kg_m2)
+
+    @property
+    def base(self) -> RigidTransform:
+        """Pose of the base link in the world now."""
+        return self.stand.pose
 
     @property
     def dof(self) -> int:
@@ -51,11 +61,11 @@ class ArmKinematics:
 
     def twin(self) -> ArmKinematics:
         """Return an instance for use by another thread."""
-        return ArmKinematics(self.model, base=self.base, tool=self._own_tool(), solver=self._solver)
+        return ArmKinematics(self.model, base=self.stand, tool=self._own_tool(), solver=self._solver)
 
     def with_tool(self, tool: RigidTransform) -> ArmKinematics:
         """Return a separate instance with the tool centre point at `tool` in the frame of the tool link."""
-        return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
+        return ArmKinematics(self.model, base=self.stand, tool=tool, solver=self._solver)
 
     def tool_link_at_flange(self) -> RigidTransform:
         """Return the pose of the tool link in the frame of the flange."""
@@ -85,7 +95,7 @@ class ArmKinematics:
             jacobian = pin.getFrameJacobian(
                 self._solver, self._data, offset.joint, offset.placement, pin.LOCAL_WORLD_ALIGNED
             )
-        return pose, self._turn @ jacobian
+        return pose, self.stand.turn @ jacobian
 
     def link_speeds(self, joints: Array, velocity: Array) -> Array:
         """Return the speed of the origin (m/s) and the angular speed (rad/s) of the link behind each joint, (n, 2)."""
@@ -119,9 +129,9 @@ class ArmKinematics:
             placement = self._data.oMi[offset.joint] * offset.placement
         # Equals base.then(…), without recomputing its rotation in every control period.
         xyzw = np.array(pin.Quaternion(placement.rotation).coeffs())
-        return RigidTransform(
-            xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw)
-        )
+        stand = self.stand
+        base = stand.pose
+        return RigidTransform(xyz=base.xyz + stand.rotation @ placement.translation, xyzw=product(base.xyzw, xyzw))
 
 
 class _Offset:

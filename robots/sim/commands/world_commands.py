@@ -66,6 +66,14 @@ class BrakeLegs(ControlCommand, frozen=True, kw_only=True, tag="brake_legs"):
     force_n: float
 
 
+class BrakeCarriage(ControlCommand, frozen=True, kw_only=True, tag="brake_carriage"):
+    """Let the carriage of a linear unit slip at a force from the next step on, in N; `released`, it has no brake."""
+
+    carriage: str
+    force_n: float
+    released: bool
+
+
 class SwitchToolLock(ControlCommand, frozen=True, kw_only=True, tag="switch_tool_lock"):
     """Turn the output of the tool changer of an arm on or off."""
 
@@ -114,6 +122,7 @@ AnyCommand = (
     | PushSimBody
     | DriveAxis
     | BrakeLegs
+    | BrakeCarriage
     | SwitchToolLock
     | MovePersonHand
     | RestoreWorld

@@ -15,6 +15,7 @@ from robots.port import Array
 from robots.scene.realism import realism
 from robots.sim.commands.world_commands import (
     AnyCommand,
+    BrakeCarriage,
     BrakeLegs,
     DriveAxis,
     MirrorArm,
@@ -36,6 +37,7 @@ from robots.sim.loop.arm_hardware import arm_hardware
 from robots.sim.loop.arm_loop import SimArmLoop
 from robots.sim.loop.belts import Belts
 from robots.sim.loop.bonds import Bonds
+from robots.sim.loop.carriages import Carriages, has_carriages
 from robots.sim.loop.device_axes import DeviceAxes, has_axes
 from robots.sim.loop.docked_modules import DockedModules
 from robots.sim.loop.external_pushes import ExternalPushes
@@ -51,6 +53,7 @@ from robots.sim.physics.contacts import ContactReader
 from robots.sim.physics.fingerprint import fingerprint
 from robots.sim.physics.physics import Physics
 
+_SceneCommand = MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | BrakeCarriage | SwitchToolLock
 _REST_RAD_S = 0.01
 
 
@@ -63,8 +66,9 @@ class Simulation:
 
     def __init__(self, cell: CellModel) -> None:
         self._cell = cell
-        # Modules and axes change the model; a built cell is only read.
-        self._physics = physics = Physics(copy(cell.model) if cell.scene.modules or has_axes(cell) else cell.model)
+        # Modules, axes and carriages change the model; a built cell is only read.
+        changes = bool(cell.scene.modules) or has_axes(cell) or has_carriages(cell)
+        self._physics = physics = Physics(copy(cell.model) if changes else cell.model)
         self.step_s = physics.step_s
         self.steps = 0
         self._qpos, self._qvel = physics.positions, physics.velocities
@@ -100,6 +104,7 @@ class Simulation:
         self._hands = ExternalPushes(physics)
         self._axes, self._belts = DeviceAxes(cell, physics), Belts(cell, physics)
         self._legs = HexapodBrakes(cell, physics)
+        self._carriages = Carriages(cell, physics, {name: arm.control for name, arm in self._arms.items()})
         self._held_parts = HeldParts(cell, physics)
         self._locks = ToolLocks(cell, physics)
         self._people = PeopleLoop(cell, physics, step_s=self.step_s)
@@ -166,7 +171,15 @@ class Simulation:
                 self._arms[command.arm].take(command)
             case MoveTool():
                 self._tools[command.arm].begin(command.motion, command.goal)
-            case MirrorArm() | MirrorTool() | MirrorPart() | DriveAxis() | BrakeLegs() | SwitchToolLock():
+            case (
+                MirrorArm()
+                | MirrorTool()
+                | MirrorPart()
+                | DriveAxis()
+                | BrakeLegs()
+                | BrakeCarriage()
+                | SwitchToolLock()
+            ):
                 self._follow(command)
             case HoldMotion():
                 for device in self._devices():
@@ -202,13 +215,15 @@ class Simulation:
         self._bonds.keep_apart(placed.away)
         return placed
 
-    def _follow(self, command: MirrorArm | MirrorTool | MirrorPart | DriveAxis | BrakeLegs | SwitchToolLock) -> None:
+    def _follow(self, command: _SceneCommand) -> None:
         match command:
             case DriveAxis():
                 self._axes.drive(command)
                 self._belts.drive(command)
             case BrakeLegs():
                 self._legs.brake(command)
+            case BrakeCarriage():
+                self._carriages.brake(command)
             case SwitchToolLock():
                 self._locks.switch(command)
             case MirrorArm():
@@ -229,6 +244,7 @@ class Simulation:
         self._belts.run(self.step_s)
         self._physics.start_step()
         self._legs.step()
+        self._carriages.step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
         for arm in self._arms.values():

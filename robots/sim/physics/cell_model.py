@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from engine.errors import CellError
 from engine.messages import Pose
+from engine.messages.pose_algebra import compose_poses, invert_pose
 from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
 from robots.sim.physics.bond_constraint import add_bonds
-from robots.sim.physics.device_axis import add_axis, add_belt, add_jaw
+from robots.sim.physics.device_axis import add_axis, add_belt, add_jaw, add_slide
 from robots.sim.physics.hexapod_legs import add_legs, place_on
 from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics.physics import mujoco
@@ -118,7 +119,7 @@ def cell_spec(scene: SimScene) -> Any:
     for part in (*scene.parts, *scene.unknown_parts):
         _add_part(spec, part, errors)
     for arm in scene.arms:
-        _add_arm(spec, arm, arm.robot(), scene.fixtures, errors)
+        _add_arm(spec, arm, arm.robot(), known, errors)
     _add_people(spec, scene)
     add_couplings(spec, scene)
     add_bonds(spec, scene.bonds)
@@ -156,6 +157,8 @@ def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, Fixture
             add_jaw(geom, friction=fixture.jaw_friction)
         if fixture.axis is not None:
             add_axis(spec, body, geom, fixture.name, fixture.axis)
+        elif fixture.carriage is not None:
+            add_slide(spec, body, geom, fixture.name, fixture.carriage)
         elif fixture.on:
             geom.mass = 0.0  # that of the platform contains it
         if fixture.belt is not None:
@@ -228,16 +231,24 @@ def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, c
 
 
 def _add_arm(
-    spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[FixtureBody, ...], errors: PlantErrors
+    spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: Mapping[str, FixtureBody], errors: PlantErrors
 ) -> None:
     base, arm_only = errors.base(arm), arm_spec(model)
     errors.apply(arm_only, model, name=arm.name)
-    frame = spec.worldbody.add_frame(pos=list(base.xyz), quat=_wxyz(base))
+    parent = spec.worldbody
+    if arm.on:
+        parent, base = spec.body(arm.on), compose_poses(invert_pose(fixtures[arm.on].pose), base)
+    frame = parent.add_frame(pos=list(base.xyz), quat=_wxyz(base))
     spec.attach(arm_only, frame=frame, prefix=f"{arm.name}/")
     # The shape of the first moving link overlaps the fixture under the base.
     shoulder = spec.joint(f"{arm.name}/{model.arm_joints[0]}").parent.name
     for fixture in fixtures:
-        spec.add_exclude(bodyname1=shoulder, bodyname2=fixture.name)
+        spec.add_exclude(bodyname1=shoulder, bodyname2=fixture)
+    if arm.on:
+        # The guides keep the carriage, with the base on it, off everything beside the rail.
+        for fixture in fixtures.values():
+            if arm.on not in (fixture.name, fixture.on) and not fixture.moves:
+                spec.add_exclude(bodyname1=arm.on, bodyname2=fixture.name)
 
 
 def _add_people(spec: Any, scene: SimScene) -> None:

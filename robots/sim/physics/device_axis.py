@@ -1,13 +1,21 @@
-"""The joint of a fixture that a device moves, in MuJoCo's specification: a throttled pneumatic cylinder."""
+"""The joint of a fixture that a device moves, in MuJoCo's specification: a throttled cylinder, a belt, a carriage.
+
+A carriage is held by a stiff spring that slips, as a leg of a hexapod is: elastic up to the force at which it slips,
+which `robots.sim.loop.carriages` sets. Dry friction of MuJoCo would let a braked carriage creep.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from robots.scene.sim_scene import AxisBody, BeltBody
+from robots.scene.sim_scene import AxisBody, BeltBody, CarriageBody
 from robots.sim.physics.physics import mujoco
 from robots.sim.physics.tool_body import PAD_SOLIMP, PAD_SOLREF
 
+CARRIAGE_N_M = 4e6
+"""Stiffness of a carriage in its brakes, and in the friction of its guides."""
+_BRAKE_DAMPING_RATIO = 0.3
 _BELT_KG = 1e4
 
 
@@ -43,3 +51,19 @@ def add_axis(spec: Any, body: Any, geom: Any, name: str, axis: AxisBody) -> None
     geom.mass = axis.mass_kg
     motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
     motor.set_to_motor()
+
+
+def add_slide(spec: Any, body: Any, geom: Any, name: str, carriage: CarriageBody) -> None:
+    """Put a fixture on its rail; its control is where its spring is without force."""
+    joint = body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=list(carriage.along))
+    joint.limited, joint.range = mujoco.mjtLimited.mjLIMITED_TRUE, list(carriage.travel_m)
+    joint.solref_limit, joint.solimp_limit = list(PAD_SOLREF), list(PAD_SOLIMP)
+    geom.mass = carriage.mass_kg
+    spring = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    spring.set_to_position(kp=CARRIAGE_N_M)
+
+
+def damping_ns_m(carriage: CarriageBody, *, released: bool) -> float:
+    """Return the damping of a carriage: that of its guides, or of its brakes, in which it does not ring."""
+    braked = 2.0 * _BRAKE_DAMPING_RATIO * math.sqrt(CARRIAGE_N_M * carriage.mass_kg)
+    return carriage.damping_ns_m if released else braked

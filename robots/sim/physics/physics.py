@@ -110,6 +110,14 @@ class Physics:
         """Set the dry friction of a joint with one axis, N or N m, from the next step on."""
         self._model.dof_frictionloss[self._model.joint(joint).dofadr[0]] = force
 
+    def set_damping(self, joint: str, damping: float) -> None:
+        """Set the damping of a joint with one axis, N s/m or N m s/rad, from the next step on."""
+        self._model.dof_damping[self._model.joint(joint).dofadr[0]] = damping
+
+    def joint_address(self, joint: str) -> int:
+        """Return the address of the position of a joint with one axis."""
+        return int(self._model.joint(joint).qposadr[0])
+
     def coupling_number(self, name: str) -> int:
         """Return the number of a coupling: a constraint that holds two bodies together."""
         return int(self._model.equality(name).id)

@@ -16,7 +16,7 @@ from engine.skills.modules import MODULES_TOPIC, CellModules, ModuleState, PlugM
 from engine.wording import did_you_mean
 from robots.model.transform import RigidTransform
 from robots.port import Array
-from robots.scene.docked_scene import docked_scene
+from robots.scene.docked_scene import docked_scene, with_moved_fixtures
 from robots.scene.sim_scene import SimScene
 from robots.sim.commands.world_commands import ModulePlaced, PlaceModule
 from robots.sim.host.world_host import WorldHost
@@ -93,9 +93,12 @@ class ModuleServices:
         for listener in self._frame_listeners:
             listener()
 
-    def fixtures_moved(self, poses: Mapping[str, Pose]) -> None:
-        """Take where devices have moved fixtures, and tell those who follow them."""
-        self.scene = _with_poses(self.scene, poses)
+    def fixtures_moved(self, poses: Mapping[str, Pose], *, loose: Collection[str] = ()) -> None:
+        """Take where devices have moved fixtures, with the arms on them, and tell those who follow them.
+
+        The carriages in `loose` are released: they may move on at any time.
+        """
+        self.scene = with_moved_fixtures(self.scene, poses, whole=self._whole, loose=loose)
         for listener in self._followers:
             listener(self.scene)
 
@@ -322,8 +325,3 @@ class ModuleServices:
 
     def _refused(self, message: str, *, hint: str) -> SkillFailed:
         return SkillFailed(message, where=self._world, hint=hint)
-
-
-def _with_poses(scene: SimScene, poses: Mapping[str, Pose]) -> SimScene:
-    fixtures = tuple(replace(one, pose=poses.get(one.name, one.pose)) for one in scene.fixtures)
-    return replace(scene, fixtures=fixtures)
