@@ -32,7 +32,7 @@ _KINDS = frozenset((
 ))  # fmt: skip
 """`tool` (`left/gripper`), `link` (`left/panda_hand`), `output` (`left/3`, `left/gripper`) and `input` (`left/3`,
 `left/door`) belong to a robot or equipment, `pwm_output` (`lights/lamp`) to equipment, `label` (`eye/plate`) to a
-camera with a detector, `position` (`vice/closed`) `hexapod_pose` and `unit_place` to a device, `tool_point`
+camera with a detector, `position` (`vice/closed`), `hexapod_pose` and `unit_place` to a device, `tool_point`
 (`probe/tip`) to a tool of a tool changer. `arm_frame` is a frame in which an arm accepts poses, `frame` a frame of
 the cell's view; those that the cell document names are both. `body`, `obstacle` and `scene_part` are objects of the
 planning scene, to which behaviors add. `tool_changer` is a robot that has one, `changeable_tool` a part that it
