@@ -11,6 +11,7 @@ _HOMES = {
     "CellItem": "engine.cell.cell_items",
     "CellItems": "engine.cell.cell_items",
     "DeviceDetails": "engine.cell.device_details",
+    "MeshDefect": "engine.cell.mesh_defect",
     "ModelNames": "engine.cell.robot_models",
     "OpenCell": "engine.cell.open_cell",
     "RegionCoverage": "engine.cell.camera_coverage",

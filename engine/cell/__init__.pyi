@@ -4,6 +4,7 @@ from engine.cell.camera_coverage import CameraCoverage, RegionCoverage
 from engine.cell.cell_connection import CellConnection
 from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_items
 from engine.cell.device_details import DeviceDetails, devices_of_cell
+from engine.cell.mesh_defect import MeshDefect
 from engine.cell.open_cell import OpenCell
 from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
 from engine.cell.tool_kind import ToolKind
@@ -14,6 +15,7 @@ __all__ = [
     "CellItem",
     "CellItems",
     "DeviceDetails",
+    "MeshDefect",
     "ModelNames",
     "OpenCell",
     "RegionCoverage",

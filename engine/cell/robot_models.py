@@ -14,6 +14,7 @@ from typing import Protocol
 import msgspec
 
 from engine.cell.camera_coverage import CameraCoverage
+from engine.cell.mesh_defect import MeshDefect
 from engine.cell.tool_kind import ToolKind
 from engine.document.cell import Cell
 from engine.errors import RegistryError
@@ -81,6 +82,10 @@ class RobotModels(Protocol):
             CellError: the cell has no cameras with a map, or cannot be simulated.
             DocumentError: as `summary`.
         """
+        ...
+
+    def mesh_defects(self, file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
+        """Return what is wrong with a mesh file of a fixture, one unit of which is `scale` metres."""
         ...
 
     def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
