@@ -18,6 +18,7 @@ _HOMES = {
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",
     "ToolKind": "engine.cell.tool_kind",
+    "UrdfModule": "engine.cell.urdf_module",
     "devices_of_cell": "engine.cell.device_details",
     "items_of_cell": "engine.cell.cell_items",
     "model_names": "engine.cell.robot_models",

@@ -8,6 +8,7 @@ from engine.cell.mesh_defect import MeshDefect
 from engine.cell.open_cell import OpenCell
 from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
 from engine.cell.tool_kind import ToolKind
+from engine.cell.urdf_module import UrdfModule
 
 __all__ = [
     "CameraCoverage",
@@ -22,6 +23,7 @@ __all__ = [
     "RobotModels",
     "RobotSummary",
     "ToolKind",
+    "UrdfModule",
     "devices_of_cell",
     "items_of_cell",
     "model_names",

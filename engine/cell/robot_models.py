@@ -16,6 +16,7 @@ import msgspec
 from engine.cell.camera_coverage import CameraCoverage
 from engine.cell.mesh_defect import MeshDefect
 from engine.cell.tool_kind import ToolKind
+from engine.cell.urdf_module import UrdfModule
 from engine.document.cell import Cell
 from engine.errors import RegistryError
 from engine.skills.arm_target import StaticCell
@@ -86,6 +87,14 @@ class RobotModels(Protocol):
 
     def mesh_defects(self, file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
         """Return what is wrong with a mesh file of a fixture, one unit of which is `scale` metres."""
+        ...
+
+    def urdf_module(self, file: Path, *, name: str) -> UrdfModule:
+        """Return a module of the links of a URDF, which are all fixed to one another.
+
+        Raises:
+            CellError: it cannot be read, has a joint that moves, or a mesh is missing.
+        """
         ...
 
     def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:

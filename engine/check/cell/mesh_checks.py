@@ -19,7 +19,7 @@ def check_meshes(fixtures: Mapping[str, Fixture], source: DocumentSource, folder
     for name, fixture in fixtures.items():
         if fixture.file is None:
             continue
-        for defect in _defects((folder / fixture.file).resolve(), fixture.scale):
+        for defect in inspected_mesh((folder / fixture.file).resolve(), fixture.scale):
             code = "unusable-mesh" if defect.unusable else "suspect-mesh"
             message, position = f"`{fixture.file}`: {defect.message}", source.position(("fixtures", name, defect.key))
             yield new_finding(code, message, path="", position=position, hint=defect.hint)
@@ -30,7 +30,8 @@ def check_module(module: Module) -> tuple[Finding, ...]:
     return tuple(check_meshes(module.document.fixtures, module.source, module.file.parent))
 
 
-def _defects(file: Path, scale: float) -> tuple[MeshDefect, ...]:
+def inspected_mesh(file: Path, scale: float) -> tuple[MeshDefect, ...]:
+    """Return what is wrong with a mesh file, one unit of which is `scale` metres."""
     try:
         status = file.stat()
     except OSError:
