@@ -7,6 +7,7 @@ from engine.cell.device_details import DeviceDetails, devices_of_cell
 from engine.cell.mesh_defect import MeshDefect
 from engine.cell.open_cell import OpenCell
 from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
+from engine.cell.scene_file import SceneFile, SceneFiles, SceneFormat
 from engine.cell.tool_kind import ToolKind
 from engine.cell.urdf_module import UrdfModule
 
@@ -22,6 +23,9 @@ __all__ = [
     "RegionCoverage",
     "RobotModels",
     "RobotSummary",
+    "SceneFile",
+    "SceneFiles",
+    "SceneFormat",
     "ToolKind",
     "UrdfModule",
     "devices_of_cell",
