@@ -22,7 +22,7 @@ class Decomposition(StrictModel, frozen=True, kw_only=True):
     parts: Annotated[int, Meta(ge=1, le=256, description="Maximum number of convex pieces")] = 64
     error_m: Annotated[
         Length, Meta(description="How far, in metres, a piece may fill a hollow of the mesh; smaller needs more pieces")
-    ] = 0.003
+    ] = 0.005
 
 
 def mesh_problems(

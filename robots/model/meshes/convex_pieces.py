@@ -23,8 +23,10 @@ Piece = tuple[Vector3, ...]
 _log = logging.getLogger("flexcell.meshes")
 _MOST_CORNERS = 64
 # CoACD needs minutes for more, and a hollow does not show in single triangles.
-_MOST_TRIANGLES = 10_000
+_MOST_TRIANGLES = 4_000
 _SAID_FROM = 500
+# A third of the search that CoACD does by itself: half the time for about as many pieces.
+_SEARCH = {"mcts_nodes": 10, "mcts_iterations": 60}
 _RECIPE = "convex pieces 1"
 
 
@@ -50,7 +52,15 @@ def convex_pieces(
         reason = error.strerror or type(error).__name__
         hint = "give its path relative to the document"
         raise CellError(f"the mesh cannot be read: {reason}", where=str(file), hint=hint) from error
-    options = (file.suffix.lower(), scale, wanted.parts, wanted.error_m, _MOST_CORNERS, _MOST_TRIANGLES)
+    options = (
+        file.suffix.lower(),
+        scale,
+        wanted.parts,
+        wanted.error_m,
+        _MOST_CORNERS,
+        _MOST_TRIANGLES,
+        *_SEARCH.values(),
+    )
     key = content_key(data, recipe=f"{_RECIPE} {options}")
     kept = read_cached(folder, key)
     if kept is not None:
@@ -92,6 +102,7 @@ def _pieces_of(solid: Any, *, error_m: float, most: int) -> list[Piece]:
         max_convex_hull=most,
         decimate=True,
         max_ch_vertex=_MOST_CORNERS,
+        **_SEARCH,
         seed=0,
     )
     return [_corners(np.asarray(corners, np.float64)) for corners, _ in found]

@@ -55,7 +55,7 @@ const ORIGIN = [0, 0, 0] as const
 const MESH_FIELDS: readonly Field[] = [
   { ...numbers('Metres per unit of the file', ['scale'], ['scale'], 'm', 1), minimum: 0 },
   { ...numbers('Pieces at most', ['decomposition', 'parts'], ['pieces'], '', 64), minimum: 1 },
-  { ...numbers('Hollows are kept to', ['decomposition', 'error_m'], ['error'], 'm', 0.003), minimum: 0 },
+  { ...numbers('Hollows are kept to', ['decomposition', 'error_m'], ['error'], 'm', 0.005), minimum: 0 },
 ]
 const FIRST_SIZE_M = 0.1
 const NO_TOOL = 'no tool'
