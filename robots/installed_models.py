@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from engine.cell import CameraCoverage, RobotModels, RobotSummary, ToolKind
+from engine.cell import CameraCoverage, MeshDefect, RobotModels, RobotSummary, ToolKind, UrdfModule
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.tool_kinds import kind_of_mechanism, tool_kinds
@@ -67,6 +67,18 @@ class InstalledModels:
         from robots.vision.camera_coverage import camera_coverage
 
         return camera_coverage(cell)
+
+    def mesh_defects(self, file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
+        """Return what is wrong with a mesh file of a fixture."""
+        from robots.model.meshes.mesh_solids import inspect_mesh
+
+        return inspect_mesh(file, scale=scale)
+
+    def urdf_module(self, file: Path, *, name: str) -> UrdfModule:
+        """Return a module of the links of a URDF; raises CellError for one that is no fixed assembly."""
+        from robots.model.urdf.urdf_fixtures import module_of_urdf
+
+        return module_of_urdf(file, name=name)
 
     def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
         """Write the scene of a cell for other programs; raises CellError or DocumentError as its writer does."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import Query
+from fastapi import Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.cell_document_bodies import CellDocumentBody, CellEditsBody
@@ -21,12 +21,18 @@ from engine.cell import (
     CellItems,
     DeviceDetails,
     ModelNames,
+    SceneFiles,
+    SceneFormat,
     devices_of_cell,
     items_of_cell,
     model_names,
 )
 from engine.editing import ReferringBehavior
 from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
+from engine.errors import CellError
+
+SCENE_TYPES: dict[str, dict[str, str]] = {"model/gltf-binary": {}, "application/xml": {}, "application/zip": {}}
+_scene_files = SceneFiles()
 
 router = WireRouter(prefix="/api/v1/cell", tags=["cell"])
 documents = WireRouter(
@@ -55,6 +61,20 @@ def get_model_names(services: ServicesOf) -> ModelNames:
 async def get_devices(services: ServicesOf) -> tuple[DeviceDetails, ...]:
     """Return the devices with a driver: what it can do, what enabling does, its options and their schema."""
     return await run_in_threadpool(devices_of_cell, services.backend.cell.document)
+
+
+@router.get(
+    "/scene",
+    responses={200: {"content": SCENE_TYPES}, 409: {"model": ErrorBody}, 422: {"model": ErrorBody}},
+)
+async def get_scene(services: ServicesOf, scene_format: Annotated[SceneFormat, Query(alias="format")]) -> Response:
+    """Return the scene of the saved document of the cell for other programs; URDF is a ZIP file with its meshes."""
+    document = services.backend.cell.document
+    if document is None:
+        raise CellError("this cell has no document", where=services.backend.cell_name)
+    made = await _scene_files.made(document.file, scene_format)
+    headers = {"content-disposition": f'attachment; filename="{made.name}"'}
+    return Response(made.content, media_type=made.media_type, headers=headers)
 
 
 @router.get("/naming_behaviors")

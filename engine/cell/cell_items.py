@@ -16,6 +16,7 @@ import msgspec
 
 from engine.cell.robot_models import tool_kinds
 from engine.document.cell import Cell, CellDocument
+from engine.document.cell_meshes import mesh_digests
 from engine.document.text.yaml_source import DocumentSource, PositionTree, load_text, parse_source
 from engine.errors import DocumentError
 from engine.skills.modules import MODULES_TOPIC
@@ -90,12 +91,14 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
         return CellItems(cell=name, description="", file="", changed=False, items=())
     text = _read(cell.file)
     modules = {name: _read(module.file) for name, module in cell.modules.items()}
+    pins = [_read(equipment.file) for equipment in cell.pins.values()]
+    meshes = mesh_digests(cell.meshes, cell.file.parent)
     items = tuple(_with_lines(item, cell, text, modules) for item in named_items(cell, topics=topics))
     return CellItems(
         cell=name,
         description=cell.document.description,
         file=cell.file.name,
-        changed=tuple(each.data for each in (text, *modules.values())) != cell.content,
+        changed=(*(each.data for each in (text, *modules.values(), *pins)), meshes) != cell.content,
         items=items,
     )
 

@@ -14,7 +14,9 @@ from typing import Protocol
 import msgspec
 
 from engine.cell.camera_coverage import CameraCoverage
+from engine.cell.mesh_defect import MeshDefect
 from engine.cell.tool_kind import ToolKind
+from engine.cell.urdf_module import UrdfModule
 from engine.document.cell import Cell
 from engine.errors import RegistryError
 from engine.skills.arm_target import StaticCell
@@ -80,6 +82,18 @@ class RobotModels(Protocol):
         Raises:
             CellError: the cell has no cameras with a map, or cannot be simulated.
             DocumentError: as `summary`.
+        """
+        ...
+
+    def mesh_defects(self, file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
+        """Return what is wrong with a mesh file of a fixture, one unit of which is `scale` metres."""
+        ...
+
+    def urdf_module(self, file: Path, *, name: str) -> UrdfModule:
+        """Return a module of the links of a URDF, which are all fixed to one another.
+
+        Raises:
+            CellError: it cannot be read, has a joint that moves, or a mesh is missing.
         """
         ...
 

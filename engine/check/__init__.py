@@ -6,6 +6,7 @@ from engine.check.breakpoint_check import ConditionCheck, check_condition
 from engine.check.cell.cell_check import check_cell, check_entries_document
 from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.entry_checks import check_stored, names_by_kind
+from engine.check.cell.mesh_checks import check_module
 from engine.check.cell.parameter_names import parameter_naming
 from engine.check.cell_fit import CellFit, cell_fit
 from engine.check.finding import CODES, Finding, Severity, finding_sort_key, invalid_document_finding, require_no_errors
@@ -26,6 +27,7 @@ __all__ = [
     "check_entries_document",
     "check_file",
     "check_given",
+    "check_module",
     "check_stored",
     "check_survey",
     "check_targets",

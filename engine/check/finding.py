@@ -50,6 +50,8 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "suspect-unit": ("warning", "a number is so large that its unit is probably wrong"),
     "range-too-wide": ("warning", "a parameter allows values that the parameter it is passed to refuses"),
     "unknown-model": ("error", "no robot or gripper model has this name, or its folder cannot be used"),
+    "unusable-mesh": ("error", "the mesh of a fixture is not there, cannot be read, or has no volume"),
+    "suspect-mesh": ("warning", "a mesh is open, or so large or small that its unit is probably wrong"),
     "person-beyond-map": ("warning", "separation monitoring does not measure a person who stands beyond the map"),
     "unseen-space-accepted": ("warning", "motions may pass through space that no camera of the cell has seen"),
     "unknown-driver": ("error", "no driver has this name"),

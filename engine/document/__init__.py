@@ -26,6 +26,7 @@ from engine.document.cell_devices import (
     SlideAxis,
 )
 from engine.document.cell_frames import poses_in_world
+from engine.document.cell_meshes import Decomposition
 from engine.document.cell_perception import (
     DepthCamera,
     DetectionRate,
@@ -83,6 +84,7 @@ __all__ = [
     "ConcurrencyCondition",
     "ConcurrencySpec",
     "DataPath",
+    "Decomposition",
     "DepthCamera",
     "DetectionRate",
     "DeviceAxis",

@@ -19,6 +19,7 @@ from engine.document.cell_bodies import Fixture, PartSpec, UnknownBody, require_
 from engine.document.cell_bonds import BondSpec, require_bonds
 from engine.document.cell_devices import DeviceSpec, require_devices
 from engine.document.cell_frames import WORLD, FrameSpec, poses_in_world, require_frames
+from engine.document.cell_meshes import mesh_digests
 from engine.document.cell_modules import (
     ModuleSpec,
     docked,
@@ -200,13 +201,14 @@ class Cell(DocumentFile[CellDocument]):
 
     `modules` are their documents; `carried` says, by module, what of the cell document itself stands on it and is no
     part: `robot arm`. `simulated` are devices whose drivers the simulation replaces, with these. `pins` are the
-    documents of its equipment.
+    documents of its equipment. `meshes` are the digests of its mesh files when it was read, by path as it names them.
     """
 
     modules: Mapping[str, Module] = field(default_factory=dict[str, Module])
     carried: Mapping[str, str] = field(default_factory=dict[str, str])
     simulated: Mapping[str, str] = field(default_factory=dict[str, str])
     pins: Mapping[str, Equipment] = field(default_factory=dict[str, Equipment])
+    meshes: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def name(self) -> str:
@@ -215,8 +217,12 @@ class Cell(DocumentFile[CellDocument]):
 
     @property
     def content(self) -> tuple[object, ...]:
-        """The plain data of the document, its modules and its equipment, to compare it with another reading."""
-        return self.source.data, *(each.source.data for each in (*self.modules.values(), *self.pins.values()))
+        """The plain data of the document, its modules and its equipment, to compare it with another reading.
+
+        The digests of its mesh files are the last: another mesh is another cell.
+        """
+        documents = (each.source.data for each in (*self.modules.values(), *self.pins.values()))
+        return self.source.data, *documents, self.meshes
 
     @property
     def seed_file(self) -> Path | None:
@@ -277,7 +283,9 @@ def cell_of_source(source: DocumentSource, *, file: Path) -> Cell:
     require_device_pins(
         document.devices, source, document.modules, document.equipment, pins, has_world=document.world is not None
     )
-    return Cell(document=document.in_world(), file=file, source=source, modules=modules, carried=carried, pins=pins)
+    meshes = mesh_digests((one.file for one in document.fixtures.values()), file.parent)
+    document = document.in_world()
+    return Cell(document=document, file=file, source=source, modules=modules, carried=carried, pins=pins, meshes=meshes)
 
 
 def _items_on_modules(

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from engine.document.cell_meshes import Decomposition, mesh_problems
 from engine.document.cell_tools import ToolSpec, require_tools
 from engine.document.placement import Angle, Color, FramedPlacement, Length, Offset
 from engine.document.text.decoding import StrictModel
@@ -39,12 +40,18 @@ class Fixture(StrictModel, frozen=True, kw_only=True):
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
     edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
-    or cylinder, and the middle of the underside of a tray.
+    or cylinder, the middle of the underside of a tray, and the origin of the file of a mesh. A mesh
+    has the size of its `file`, an STL, OBJ or Collada file; `color` is that of files without colours.
     """
 
-    shape: Literal["box", "cylinder", "tray"]
-    size_m: tuple[Length, ...]
+    shape: Literal["box", "cylinder", "tray", "mesh"]
+    size_m: tuple[Length, ...] = ()
     wall_m: Length = 0.005
+    file: Annotated[str, Meta(min_length=1, description="Mesh file, relative to this document")] | None = None
+    scale: Annotated[float, Meta(gt=0.0, description="Metres for one unit of the mesh file: 0.001 for millimetres")] = (
+        1.0
+    )
+    decomposition: Decomposition | None = None
     at: FramedPlacement = FramedPlacement()
     color: Color = "#b0b0b0"
     spring: Spring | None = None
@@ -111,6 +118,10 @@ def require_sizes(
         *((("unknown_bodies", name), body) for name, body in (unknown_bodies or {}).items()),
     ]
     for path, body in bodies:
+        if isinstance(body, Fixture):
+            _require_mesh(body, source, path)
+        if body.shape == "mesh":
+            continue
         meaning = _SIZES[body.shape]
         due = len(meaning.split(","))
         if len(body.size_m) != due:
@@ -124,8 +135,20 @@ def require_sizes(
             raise DocumentError(
                 "a tray cannot have a spring", where=source.position((*path, "spring")), hint="put a sprung box into it"
             )
-        if path[0] == "parts" and path[1] in fixtures:
-            raise DocumentError(
-                f"`{path[1]}` is both a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
-            )
+    for name in parts:
+        if name in fixtures:
+            where = source.position(("parts", name), of_key=True)
+            raise DocumentError(f"`{name}` is both a fixture and a part", where=where, hint="rename one")
     require_tools({name: (part.shape, part.tool) for name, part in parts.items()}, source)
+
+
+def _require_mesh(fixture: Fixture, source: DocumentSource, path: DataPath) -> None:
+    """Require what a mesh needs of a mesh, and nothing of it of other shapes."""
+    for key, message, hint in mesh_problems(
+        fixture.shape,
+        file=fixture.file,
+        scale=fixture.scale,
+        decomposition=fixture.decomposition,
+        other={"size_m": bool(fixture.size_m), "spring": fixture.spring is not None},
+    ):
+        raise DocumentError(message, where=source.position((*path, key)), hint=hint)

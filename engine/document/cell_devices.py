@@ -254,7 +254,7 @@ def _axis_problems(
         if body in moved:
             yield (*path, "body"), f"`{body}` is moved by {moved[body]} too", "give each axis a fixture of its own"
         moved[body] = f"`{key}` of `{name}`"
-        if body in fixtures and (fixtures[body].spring is not None or fixtures[body].shape == "tray"):
+        if body in fixtures and (fixtures[body].spring is not None or fixtures[body].shape in {"tray", "mesh"}):
             yield (*path, "body"), f"`{body}` cannot be moved by an axis", "choose a box or cylinder without a spring"
         if math.hypot(*axis.along) < 1e-6:
             yield (*path, "along"), "this direction has no length", "[1, 0, 0] is along the x axis of the fixture"

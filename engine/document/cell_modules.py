@@ -90,8 +90,18 @@ def load_modules(
                 where=source.position(("modules", name, "module")),
                 hint="give the folder of its `module.yaml`, relative to this document",
             )
-        loaded[name] = load_module(folder_of_module)
+        loaded[name] = _below(load_module(folder_of_module), Path(spec.module))
     return loaded
+
+
+def _below(module: Module, folder: Path) -> Module:
+    """Return a module whose mesh files are relative to the document that names the module."""
+    folder = folder.parent if folder.suffix else folder
+    fixtures = {
+        name: replace(one, file=(folder / one.file).as_posix()) if one.file is not None else one
+        for name, one in module.document.fixtures.items()
+    }
+    return Module(document=replace(module.document, fixtures=fixtures), file=module.file, source=module.source)
 
 
 def docked(name: str, document: ModuleDocument, *, connector: str, equipment: str | None = None) -> DockedModule:

@@ -57,6 +57,7 @@ def example_files(name: str) -> Mapping[str, bytes]:
         cell = load_cell(behavior.cell_file)
         modules = {cell.resolve(each.module) / MODULE_FILE for each in cell.document.modules.values()}
         files |= {cell.file, *modules, *([cell.seed_file] if cell.seed_file is not None else [])}
+        files |= {cell.resolve(mesh) for mesh in cell.meshes}
         files |= {cell.resolve(one.calibration) for one in cell.document.robots.values() if one.calibration is not None}
     found = sorted({file.resolve() for file in files})
     # A cell may refer to a file beside the folder of all examples, such as a calibration.

@@ -30,6 +30,8 @@ class RecordingDescription(msgspec.Struct, frozen=True, kw_only=True):
     behavior_file: str
     """The attachment with the behavior; the others are the documents that it references."""
     cell_file: str = ""
+    meshes: dict[str, str] = {}
+    """The SHA-256 of the mesh files of the cell, by the names that it has for them."""
     parameters: dict[str, object] = {}
     inputs: dict[str, object] = {}
     seed: int = 0

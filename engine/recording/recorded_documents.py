@@ -22,11 +22,15 @@ _SUBSTITUTES = ".substitutes.json"
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedDocuments:
-    """Texts by path relative to one folder; `behavior` and `cell` name two of them."""
+    """Texts by path relative to one folder; `behavior` and `cell` name two of them.
+
+    `meshes` are the digests of the mesh files of the cell, by the names that it has for them.
+    """
 
     behavior: str
     cell: str = ""
     texts: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
+    meshes: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def unpack(self, folder: Path) -> Path:
         """Write the documents to `folder` and return the path of the behavior.
@@ -86,6 +90,7 @@ def collect_documents(behavior: Behavior, cell: Cell | None = None) -> RecordedD
     return RecordedDocuments(
         behavior=behavior.file.resolve().relative_to(folder).as_posix(),
         cell=cell_file.relative_to(folder).as_posix() if cell_file is not None else "",
+        meshes=cell.meshes if cell is not None else {},
         texts={**{file.relative_to(folder).as_posix(): text for file, text in texts.items()}, **_substitutes(behavior)},
     )
 

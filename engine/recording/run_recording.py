@@ -115,6 +115,7 @@ class RunRecording:
             document=run.plan.document_hash,
             behavior_file=order.documents.behavior,
             cell_file=order.documents.cell,
+            meshes=dict(order.documents.meshes),
             parameters=msgspec.to_builtins(run.parameters),
             inputs=msgspec.to_builtins(dict(inputs or {})),
             seed=run.seed,

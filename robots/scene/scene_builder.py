@@ -20,7 +20,9 @@ from engine.document import (
 )
 from engine.errors import CellError
 from engine.messages import Pose
+from robots.model.meshes.convex_pieces import convex_pieces
 from robots.model.registry import model_location
+from robots.model.urdf.visual_mesh import file_visuals
 from robots.scene.joined_bodies import drawn_bonds, part_poses
 from robots.scene.sim_scene import (
     ArmPlacement,
@@ -29,6 +31,7 @@ from robots.scene.sim_scene import (
     CarriageBody,
     FixtureBody,
     HexapodBody,
+    MeshBody,
     PartBody,
     PersonBody,
     Rgba,
@@ -46,7 +49,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
     Arms with another driver than `sim` are bodies only. `resolve` resolves the document's paths (`Cell.resolve`).
 
     Raises:
-        CellError: a robot or gripper model is unknown, or the cell has no world.
+        CellError: a robot or gripper model is unknown, a mesh cannot be used, or the cell has no world.
         DocumentError: a model folder or a calibration file is invalid.
     """
     world = document.world
@@ -66,7 +69,7 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
             msgspec.structs.replace(_arm(name, robot, resolve), on=carriages.get(name, ""))
             for name, robot in document.robots.items()
         ),
-        fixtures=_fixtures(document),
+        fixtures=_fixtures(document, resolve),
         parts=tuple(_parts(document, seed)),
         bonds=drawn_bonds(document.bonds, seed=seed),
         people=tuple(_person(name, person) for name, person in document.people.items()),
@@ -82,8 +85,8 @@ def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Res
     )
 
 
-def _fixtures(document: CellDocument) -> tuple[FixtureBody, ...]:
-    bodies = {name: _fixture(name, fixture) for name, fixture in document.fixtures.items()}
+def _fixtures(document: CellDocument, resolve: Resolve) -> tuple[FixtureBody, ...]:
+    bodies = {name: _fixture(name, fixture, resolve) for name, fixture in document.fixtures.items()}
     for axis in (axis for device in document.devices.values() for axis in device.axes.values()):
         joint = _axis(axis)
         bodies[axis.body] = msgspec.structs.replace(bodies[axis.body], axis=joint, jaw_friction=axis.friction)
@@ -145,13 +148,27 @@ def _axis(axis: DeviceAxis) -> AxisBody:
     )
 
 
-def _fixture(name: str, fixture: Fixture) -> FixtureBody:
+def _mesh(name: str, fixture: Fixture, resolve: Resolve) -> MeshBody | None:
+    if fixture.file is None:
+        return None
+    file, scale = resolve(fixture.file), fixture.scale
+    try:
+        return MeshBody(
+            pieces=convex_pieces(file, scale=scale, decomposition=fixture.decomposition),
+            looks=file_visuals(file, scale=scale, colour=_rgba(fixture.color)),
+        )
+    except CellError as error:
+        raise CellError(f"fixture `{name}`: {error.message}", where=error.where, hint=error.hint) from error
+
+
+def _fixture(name: str, fixture: Fixture, resolve: Resolve) -> FixtureBody:
     body = FixtureBody(
         name=name,
         shape=fixture.shape,
         size_m=fixture.size_m,
         wall_m=fixture.wall_m,
         pose=fixture.at.pose(),
+        mesh=_mesh(name, fixture, resolve),
         rgba=_rgba(fixture.color),
     )
     spring = fixture.spring

@@ -2,7 +2,8 @@
 
 All poses are in the world frame; sizes are metres. `box` has full edge lengths, `cylinder`
 (diameter, length along z), `sphere` its diameter; a `tray` has outer edge lengths and
-its pose is the centre of its bottom face, every other pose is the centre of the body.
+its pose is the centre of its bottom face, that of a `mesh` the origin of its file, every other pose is the centre of
+the body.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ import msgspec
 
 from engine.document import BondSpec, RealismName, ToolChangerSpec, ToolSpec, arm_reach_m
 from engine.messages import Pose, Vector3
+from robots.model.meshes.convex_pieces import Piece
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
+from robots.model.urdf.visual_mesh import VisualMesh
 from robots.port import SeparationRule
 from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 
@@ -120,6 +123,13 @@ class CarriageBody(msgspec.Struct, frozen=True, kw_only=True):
     holding_n: float
 
 
+class MeshBody(msgspec.Struct, frozen=True, kw_only=True):
+    """The mesh of a fixture, in its frame: its convex `pieces` are what bodies touch, its `looks` what is drawn."""
+
+    pieces: tuple[Piece, ...]
+    looks: tuple[VisualMesh, ...]
+
+
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     """A static body; `wall_m` is the thickness of a tray's floor and walls.
 
@@ -127,7 +137,8 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     or a workpiece on a compliant table; it then weighs `sprung_kg`, and its soft skin has
     `skin_friction` with any other body. With an `axis` it is moved by a device, with a `belt` its surface is.
     `jaw_friction` is that of the surface of what a device presses with, or against, or carries with. With a `hexapod`
-    it is a platform on legs; what is `on` a platform or a `carriage` is fixed to it, or has its axis on it.
+    it is a platform on legs; what is `on` a platform or a `carriage` is fixed to it, or has its axis on it. With the
+    shape `mesh` it has a `mesh` and no size.
     """
 
     name: str
@@ -145,6 +156,7 @@ class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
     hexapod: HexapodBody | None = None
     carriage: CarriageBody | None = None
     on: str = ""
+    mesh: MeshBody | None = None
     rgba: Rgba = GREY
 
     @property

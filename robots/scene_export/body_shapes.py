@@ -21,7 +21,12 @@ class BodySolid:
 
 
 def solids_of(body: FixtureBody | PartBody) -> Iterator[BodySolid]:
-    """Yield the solids of a body: one, the floor and the walls of a tray, or a plate and what a tool has beside it."""
+    """Yield the solids of a body: one, the floor and the walls of a tray, or a plate and what a tool has beside it.
+
+    A mesh has none.
+    """
+    if isinstance(body, FixtureBody) and body.mesh is not None:
+        return
     if isinstance(body, FixtureBody) and body.shape == "tray":
         for centre_m, size_m in tray_boxes(body):
             yield BodySolid(shape="box", size_m=size_m, pose=Pose(xyz=centre_m))

@@ -76,6 +76,11 @@ def _add_arm(trimesh: Any, drawn: Any, arm: ArmPlacement, built: CellModel) -> N
 
 def _add_body(trimesh: Any, drawn: Any, body: FixtureBody | PartBody) -> None:
     drawn.graph.update(frame_to=body.name, frame_from=_WORLD, matrix=_matrix(body.pose))
+    if isinstance(body, FixtureBody) and body.mesh is not None:
+        for number, look in enumerate(body.mesh.looks):
+            name = f"{body.name}/look_{number}"
+            drawn.add_geometry(_mesh(trimesh, look), node_name=name, geom_name=name, parent_node_name=body.name)
+        return
     for number, solid in enumerate(solids_of(body)):
         shape = _solid(trimesh, solid)
         shape.visual = _colour(trimesh, body.rgba)

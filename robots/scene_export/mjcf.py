@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 
 from engine.errors import CellError
-from robots.model.urdf.visual_mesh import LinkVisual, link_visuals
-from robots.scene.sim_scene import ArmPlacement, SimScene
+from engine.messages import Pose
+from engine.messages.shapes import AT_ORIGIN
+from robots.model.urdf.visual_mesh import VisualMesh, link_visuals
+from robots.scene.sim_scene import SimScene
 from robots.sim.physics.cell_model import build_cell, cell_spec
 from robots.sim.physics.physics import mujoco
 
@@ -42,7 +44,11 @@ def mjcf_of(scene: SimScene, name: str) -> Mapping[str, bytes]:
     _paint(spec, scene)
     for arm in scene.arms:
         for index, visual in enumerate(link_visuals(arm.robot())):
-            _add_visual(spec, arm, visual, f"{arm.name}/visual_{index}")
+            name_of_mesh, body = f"{arm.name}/visual_{index}", f"{arm.name}/{visual.link}"
+            _add_visual(spec, body, visual.mesh, name_of_mesh, at=Pose(xyz=visual.xyz, xyzw=visual.xyzw))
+    for fixture in scene.fixtures:
+        for index, look in enumerate(fixture.mesh.looks if fixture.mesh is not None else ()):
+            _add_visual(spec, fixture.name, look, f"{fixture.name}/look_{index}", at=AT_ORIGIN)
     try:
         spec.compile()
         spec.add_key(name="home", qpos=_home(scene).tolist())
@@ -54,14 +60,15 @@ def mjcf_of(scene: SimScene, name: str) -> Mapping[str, bytes]:
 
 
 def _paint(spec: Any, scene: SimScene) -> None:
-    """Give fixtures and parts, which look like what they are, their colours."""
-    for body in (*scene.fixtures, *scene.parts):
+    """Give fixtures without a mesh and parts, which look like what they are, their colours."""
+    solids = (fixture for fixture in scene.fixtures if fixture.mesh is None)
+    for body in (*solids, *scene.parts):
         for geom in spec.body(body.name).geoms:
             geom.rgba, geom.group = list(body.rgba), 0
 
 
-def _add_visual(spec: Any, arm: ArmPlacement, visual: LinkVisual, name: str) -> None:
-    mesh, (x, y, z, w) = visual.mesh, visual.xyzw
+def _add_visual(spec: Any, body: str, mesh: VisualMesh, name: str, *, at: Pose) -> None:
+    x, y, z, w = at.xyzw
     spec.add_mesh(
         name=name,
         uservert=np.frombuffer(mesh.vertices, np.float32).tolist(),
@@ -69,11 +76,11 @@ def _add_visual(spec: Any, arm: ArmPlacement, visual: LinkVisual, name: str) -> 
         # A surface has no volume that its mass could follow from, and has no mass.
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )
-    spec.body(f"{arm.name}/{visual.link}").add_geom(
+    spec.body(body).add_geom(
         name=name,
         type=_MESH,
         meshname=name,
-        pos=list(visual.xyz),
+        pos=list(at.xyz),
         quat=[w, x, y, z],
         rgba=list(mesh.rgba),
         contype=0,

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -17,7 +19,7 @@ from engine.errors import CellError
 from engine.messages import Pose
 from robots.model.robot_model import RobotModel
 from robots.model.urdf.description import resolve_uri
-from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, Rgba, SimScene
+from robots.scene.sim_scene import ArmPlacement, FixtureBody, MeshBody, PartBody, Rgba, SimScene
 from robots.scene_export.body_shapes import BodySolid, inertia_kg_m2, solids_of
 
 _WORLD = "world"
@@ -36,7 +38,7 @@ def urdf_of(scene: SimScene, name: str) -> Mapping[str, bytes]:
     for arm in scene.arms:
         _add_arm(robot, arm, meshes)
     for body in (*scene.fixtures, *scene.parts):
-        _add_body(robot, body)
+        _add_body(robot, body, meshes)
     for frame, pose in scene.frames.items():
         ET.SubElement(robot, "link", name=frame)
         _fix(robot, frame, pose)
@@ -68,6 +70,12 @@ class _Meshes:
             self._names[path] = name
         return self._names[path]
 
+    def name_of_surface(self, name: str, surface: Any) -> str:
+        """Return the name beside the URDF of a mesh of trimesh, which is written as STL."""
+        file = f"{self._folder}/{name.replace('/', '_')}.stl"
+        self.contents[file] = surface.export(file_type="stl")
+        return file
+
 
 def _add_arm(robot: ET.Element, arm: ArmPlacement, meshes: _Meshes) -> None:
     model = arm.robot()
@@ -88,13 +96,15 @@ def _mesh_file(uri: str, model: RobotModel) -> Path:
     return resolve_uri(uri, package_dirs=model.package_dirs, relative_to=Path())
 
 
-def _add_body(robot: ET.Element, body: FixtureBody | PartBody) -> None:
+def _add_body(robot: ET.Element, body: FixtureBody | PartBody, meshes: _Meshes) -> None:
     link = ET.SubElement(robot, "link", name=body.name)
     if isinstance(body, PartBody):
         inertial = ET.SubElement(link, "inertial")
         ET.SubElement(inertial, "mass", value=_number(body.mass_kg))
         xx, yy, zz = (_number(value) for value in inertia_kg_m2(body))
         ET.SubElement(inertial, "inertia", ixx=xx, ixy="0", ixz="0", iyy=yy, iyz="0", izz=zz)
+    if isinstance(body, FixtureBody) and body.mesh is not None:
+        _add_mesh(link, body, body.mesh, meshes)
     for solid in solids_of(body):
         looks, touches = ET.SubElement(link, "visual"), ET.SubElement(link, "collision")
         for element in (looks, touches):
@@ -102,6 +112,24 @@ def _add_body(robot: ET.Element, body: FixtureBody | PartBody) -> None:
             _add_geometry(element, solid)
         _add_colour(looks, f"{body.name}_colour", body.rgba)
     _fix(robot, body.name, body.pose)
+
+
+def _add_mesh(link: ET.Element, body: FixtureBody, mesh: MeshBody, meshes: _Meshes) -> None:
+    """Add how a mesh looks, and its convex pieces as what is touched."""
+    # Slow to import; its types are incomplete.
+    trimesh: Any = import_module("trimesh")
+    for number, look in enumerate(mesh.looks):
+        points = np.frombuffer(look.vertices, np.float32).reshape(-1, 3)
+        faces = np.frombuffer(look.faces, np.uint32).reshape(-1, 3)
+        surface = trimesh.Trimesh(vertices=points, faces=faces, process=False)
+        visual = ET.SubElement(link, "visual")
+        name = meshes.name_of_surface(f"{body.name}_look_{number}", surface)
+        ET.SubElement(ET.SubElement(visual, "geometry"), "mesh", filename=name)
+        _add_colour(visual, f"{body.name}_colour_{number}", look.rgba)
+    for number, piece in enumerate(mesh.pieces):
+        surface = trimesh.Trimesh(vertices=np.array(piece)).convex_hull
+        name = meshes.name_of_surface(f"{body.name}_piece_{number}", surface)
+        ET.SubElement(ET.SubElement(ET.SubElement(link, "collision"), "geometry"), "mesh", filename=name)
 
 
 def _add_geometry(element: ET.Element, solid: BodySolid) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 from engine.cell.cell_names import CellNameKind, CellNames, cell_names
 from engine.cell.robot_models import RobotModels, robot_models
 from engine.check.cell.driver_checks import check_drivers
+from engine.check.cell.mesh_checks import check_meshes
 from engine.check.finding import Finding, finding_sort_key, new_finding
 from engine.check.values.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
 from engine.document.cell import Cell, CellDocument
@@ -36,6 +37,7 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
             findings += _missing(names, "part", part, cell.source.position(path, of_key=True))
     findings += _check_unknown_space(cell)
     findings += _check_separation(cell)
+    findings += check_meshes(cell.document.fixtures, cell.source, cell.file.parent)
     findings += _check_seed(cell, names)
     return tuple(sorted(findings, key=finding_sort_key))
 

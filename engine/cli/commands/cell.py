@@ -33,7 +33,7 @@ fixtures:
 
 app = typer.Typer(
     help="Show or restore the connection to the devices of a running server's cell; show what the cameras of a cell"
-    " see; export its scene; begin a new one.",
+    " see; import meshes into it and export its scene; begin a new one.",
     no_args_is_help=True,
 )
 
@@ -95,6 +95,37 @@ def new(file: Annotated[Path, typer.Argument(help="The document to write.", show
     except OSError as error:
         raise FlexcellError(f"{file} cannot be written: {error.strerror}", hint="choose another folder") from error
     sys.stdout.write(f"{file}\nBuild it in the browser: flexcell serve --cell {file}, then press *Edit the cell*.\n")
+
+
+@app.command("import")
+def import_files(
+    files: Annotated[list[Path], typer.Argument(help="Meshes (.stl, .obj, .dae) and URDF files.", show_default=False)],
+    cell: Annotated[Path, typer.Option("--cell", help="The cell document that takes them.", show_default=False)],
+    name: Annotated[
+        str | None, typer.Option(help="Its name in the cell, for one file; that of the file by default.")
+    ] = None,
+    scale: Annotated[
+        float, typer.Option(min=1e-6, help="Metres for one unit of the meshes: 0.001 for millimetres.")
+    ] = 1.0,
+) -> None:
+    """Take meshes into a cell as fixtures, and URDF files without moving joints as modules; say what is left out.
+
+    `flexcell cell import housing.stl --scale 0.001 --cell cells/press.yaml`
+    """
+    from engine.check.cell.mesh_checks import inspected_mesh
+    from engine.editing.cells.scene_import import import_file
+
+    if name is not None and len(files) > 1:
+        raise FlexcellError("--name is for one file", hint="import the files one after the other")
+    for file in files:
+        made = import_file(file, cell, _models(), name=name, scale=scale)
+        sys.stdout.write(f"{made.kind} {made.name}: {', '.join(str(each) for each in made.files)}\n")
+        for line in made.left_out:
+            sys.stdout.write(f"left out: {line}\n")
+        for defect in inspected_mesh(file, scale) if made.kind == "fixture" else ():
+            sys.stderr.write(f"{file}: warning: {defect.message} ({defect.hint})\n")
+        if made.kind == "module":
+            sys.stdout.write(f"dock it: `modules: {{{made.name}: {{module: modules/{made.name}, connector: NAME}}}}`\n")
 
 
 @app.command("export")

@@ -18,6 +18,7 @@ from engine.check import (
     check_behavior,
     check_cell,
     check_entries_document,
+    check_module,
     check_survey,
     check_targets,
     finding_sort_key,
@@ -166,8 +167,7 @@ def findings_of(
             case "entries":
                 return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
             case "module":
-                load_module(file)
-                return ()
+                return check_module(load_module(file))
             case "equipment":
                 load_equipment(file)
                 return ()

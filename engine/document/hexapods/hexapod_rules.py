@@ -88,8 +88,12 @@ def _body_problems(
     for field, body in (("base", hexapod.base), ("platform", hexapod.platform)):
         if body in moved:
             yield (field,), f"`{body}` is moved by {moved[body]} too", "choose a fixture of its own"
-    if fixtures[hexapod.platform].shape == "tray":
-        yield ("platform",), f"`{hexapod.platform}` is a tray", "choose a box or cylinder, and put the tray on it"
+    if (shape := fixtures[hexapod.platform].shape) in {"tray", "mesh"}:
+        yield (
+            ("platform",),
+            f"`{hexapod.platform}` is a {shape}",
+            f"choose a box or cylinder with the {shape} on it",
+        )
     for path, body in ((("platform",), hexapod.platform), *((("carries",), one) for one in hexapod.carries)):
         if fixtures[body].spring is not None:
             yield path, f"`{body}` has a spring and cannot be moved", "remove the spring"

@@ -101,7 +101,8 @@ class CellThings:
             return ", ".join(words)
         body = {**document.parts, **document.fixtures}.get(name)
         if body is not None:
-            return f"{body.shape} {' x '.join(f'{edge * 1000:g}' for edge in body.size_m)} mm"
+            size = f"{' x '.join(f'{edge * 1000:g}' for edge in body.size_m)} mm"
+            return f"{body.shape} {body.file if isinstance(body, Fixture) and body.shape == 'mesh' else size}"
         if kind == "joints" and name in self._joints:
             return f"{self._joints[name]} joints"
         return "detects" if name in self.names.by_kind.get("detector", ()) else ""
@@ -214,6 +215,8 @@ class _Mapping:
         one, two = self._own.body(name), self._other.body(other)
         if one is None or two is None or one.shape != two.shape:
             return 0.0
+        if one.shape == "mesh":
+            return 3.0 if one == two else 2.0
         return 2.0 + sum(min(a, b) / max(a, b) for a, b in zip(one.size_m, two.size_m, strict=True)) / len(one.size_m)
 
     def _links_alike(self, name: str, other: str) -> float:

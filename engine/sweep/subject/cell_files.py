@@ -14,6 +14,7 @@ def written_paths(cell: Cell) -> Iterator[str]:
     if store is not None and store.seed is not None:
         yield store.seed
     yield from (each.pins for each in cell.document.equipment.values() if each.pins is not None)
+    yield from cell.meshes
     yield from _models(cell)
 
 
@@ -23,8 +24,9 @@ def model_paths(cell: Cell) -> list[Path]:
 
 
 def model_files(cell: Cell) -> Iterator[Path]:
-    """Yield the calibrations and equipment documents of a cell, and the files in its model folders."""
+    """Yield the calibrations, equipment documents and meshes of a cell, and the files in its model folders."""
     yield from (equipment.file for equipment in cell.pins.values())
+    yield from (cell.resolve(mesh) for mesh in cell.meshes)
     for path in model_paths(cell):
         yield from (file for file in sorted(path.rglob("*")) if file.is_file()) if path.is_dir() else (path,)
 

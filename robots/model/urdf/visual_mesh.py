@@ -65,6 +65,17 @@ def link_visuals(model: RobotModel, *, cache: Path | None = None) -> tuple[LinkV
     return tuple(visuals)
 
 
+def file_visuals(path: Path, *, scale: float, colour: Rgba, cache: Path | None = None) -> tuple[VisualMesh, ...]:
+    """Return the meshes of one file; `scale` is metres for one unit of it, `colour` that of files without colours.
+
+    Raises:
+        CellError: it is missing or cannot be read.
+    """
+    fixed = colour if path.suffix.lower() != ".dae" else None
+    meshes = _meshes(path, cache if cache is not None else cache_dir())
+    return tuple(_adjusted(each, (scale, scale, scale), fixed) for each in meshes)
+
+
 def _described(
     visual: ET.Element, model: RobotModel, known: dict[Path, tuple[VisualMesh, ...]], folder: Path
 ) -> tuple[VisualMesh, ...]:

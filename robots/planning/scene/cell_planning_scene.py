@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.errors import CellError
 from engine.messages import Pose
-from engine.messages.shapes import Box, Cylinder, Obstacle, Shape, Solid, Sphere
+from engine.messages.shapes import Box, Cylinder, Hull, Obstacle, Shape, Solid, Sphere
 from robots.planning.scene.exact_checker import ExactChecker
 from robots.planning.scene.planning_scene import NamePair, PlanningScene, SceneArm
 from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
@@ -17,9 +17,9 @@ from robots.scene.sim_scene import FixtureBody, PartBody, SimScene
 def planning_scene(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) -> PlanningScene:
     """Return the planning scene of a cell; all arms are at home.
 
-    Fixtures and parts become obstacles with their names, a tray five boxes with one name. Parts have the poses
-    of `parts`, in the world, else their initial poses. The first moving link of an arm may touch the
-    fixtures that it touches at home, to which the arm is bolted.
+    Fixtures and parts become obstacles with their names, a tray five boxes with one name, a mesh its convex pieces.
+    Parts have the poses of `parts`, in the world, else their initial poses. The first moving link of an arm may touch
+    the fixtures that it touches at home, to which the arm is bolted.
 
     Raises:
         CellError: the shape of a body is unknown, or its size does not fit.
@@ -56,6 +56,8 @@ def known_obstacles(cell: SimScene, *, parts: Mapping[str, Pose] | None = None) 
 def _solids(body: FixtureBody | PartBody) -> tuple[Solid, ...]:
     if body.shape == "tray" and isinstance(body, FixtureBody):
         return _tray(body)
+    if isinstance(body, FixtureBody) and body.mesh is not None:
+        return tuple(Solid(shape=Hull(points_m=piece)) for piece in body.mesh.pieces)
     plate = Solid(shape=_shape(body.shape, body.size_m, of=body.name))
     if not isinstance(body, PartBody) or body.tool is None:
         return (plate,)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from engine.errors import CellError
 from engine.messages import Pose
 from engine.messages.pose_algebra import compose_poses, invert_pose
+from robots.model.meshes.convex_pieces import Piece
 from robots.model.robot_model import RobotModel
 from robots.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.sim.physics.arm_spec import arm_spec
@@ -27,7 +28,7 @@ from robots.sim.physics.tool_coupling import add_couplings, place_shape
 Indices = NDArray[np.intp]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
-_SPHERE = mujoco.mjtGeom.mjGEOM_SPHERE
+_SPHERE, _MESH = mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_MESH
 # The skin of compliant fixtures is soft at first touch: with MuJoCo's default of 0.9, which spreads a force over the
 # corners of flat pads, sliding objects repeatedly lose contact (`benchmarks/contact_sliding.py`).
 _SKIN_SOLIMP = (0.5, 0.95, 0.001, 0.5, 2.0)
@@ -149,6 +150,10 @@ def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, Fixture
     if fixture.on:
         parent, pose = spec.body(fixture.on), place_on(fixtures[fixture.on], fixture)
     body = parent.add_body(name=fixture.name, pos=list(pose.xyz), quat=_wxyz(pose))
+    if fixture.mesh is not None:
+        for geom in add_pieces(spec, body, fixture.name, fixture.mesh.pieces):
+            _finish_piece(geom, fixture)
+        return
     if fixture.shape != "tray":
         geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
         if fixture.spring_n_m > 0.0:
@@ -168,6 +173,22 @@ def _add_fixture(spec: Any, fixture: FixtureBody, fixtures: Mapping[str, Fixture
         geom = body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])
         if fixture.on:
             geom.mass = 0.0
+
+
+def add_pieces(spec: Any, body: Any, name: str, pieces: Iterable[Piece]) -> Iterator[Any]:
+    """Add the convex pieces of a mesh to a body, and yield their geometries."""
+    for index, piece in enumerate(pieces):
+        asset = spec.add_mesh(name=f"{name}/{index}", uservert=np.array(piece).reshape(-1).tolist())
+        # A piece may be as thin as a sheet.
+        asset.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+        yield body.add_geom(name=f"{name}/{index}", type=_MESH, meshname=asset.name, condim=3)
+
+
+def _finish_piece(geom: Any, fixture: FixtureBody) -> None:
+    if fixture.jaw_friction is not None:
+        add_jaw(geom, friction=fixture.jaw_friction)
+    if fixture.on:
+        geom.mass = 0.0
 
 
 def _add_spring(body: Any, geom: Any, fixture: FixtureBody) -> None:

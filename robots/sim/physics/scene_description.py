@@ -48,6 +48,20 @@ def _mesh(arm: str, index: int, visual: LinkVisual) -> VisualGeometry:
 def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
     pose = fixture.pose if not fixture.moves else Pose(xyz=(0.0, 0.0, 0.0))
     frame = fixture.name if fixture.moves else "world"
+    if fixture.mesh is not None:
+        return [
+            VisualGeometry(
+                name=f"{fixture.name}/{index}",
+                frame=frame,
+                kind="mesh",
+                vertices=look.vertices,
+                faces=look.faces,
+                rgba=look.rgba,
+                xyz=pose.xyz,
+                xyzw=pose.xyzw,
+            )
+            for index, look in enumerate(fixture.mesh.looks)
+        ]
     if fixture.shape != "tray":
         kind, size = _shape(fixture.shape, fixture.size_m)
         return [

@@ -62,8 +62,13 @@ export async function call<T>(path: string, init?: RequestInit): Promise<T> {
 }
 
 /** Send a body to `/api/v1…` for a file; a refusal is a ServerError. */
-export async function postForFile(path: string, body: unknown): Promise<Blob> {
-  const response = await request(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })
+export function postForFile(path: string, body: unknown): Promise<Blob> {
+  return getFile(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })
+}
+
+/** Ask `/api/v1…` for a file; a refusal is a ServerError. */
+export async function getFile(path: string, init?: RequestInit): Promise<Blob> {
+  const response = await request(path, init)
   if (!response.ok) throw refusedBy(response, parse(await response.text()))
   return response.blob()
 }

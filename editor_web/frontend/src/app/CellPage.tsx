@@ -23,6 +23,7 @@ import { itemAt, itemsOfDraft, surroundingsOf } from '../document/cellEditing'
 import { cellTree, deviceOf, nodeAt } from '../document/cellTree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { DriverSwitch } from '../features/cell/DriverSwitch'
+import { ExportMenu } from '../features/cell/ExportMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { AddMenu } from '../features/cellEditor/AddMenu'
 import { EditorBar } from '../features/cellEditor/EditorBar'
@@ -180,6 +181,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
             Edit the cell
           </Button>
         )}
+        {cell.file && <ExportMenu file={cell.file} />}
         <DriverSwitch session={session} />
       </PageHead>
       {phase !== 'closed' && (

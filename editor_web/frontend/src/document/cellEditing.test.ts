@@ -66,6 +66,23 @@ it('gives another shape as many lengths as it needs', () => {
   expect(withShape({}, 'sphere')).toEqual({ shape: 'sphere', size_m: [0.1] })
 })
 
+it('has the scale and the pieces of a mesh instead of a size, and keeps it a mesh', () => {
+  const mesh = { shape: 'mesh', file: 'meshes/bin.stl', scale: 0.001 }
+  const fields = fieldsFor('fixtures', mesh, AROUND)
+  expect(fields.map(({ label }) => label)).toEqual([
+    'Shape',
+    'Metres per unit of the file',
+    'Pieces at most',
+    'Hollows are kept to',
+    'Stands in',
+    'Position',
+    'Roll, pitch, yaw',
+    'Colour',
+  ])
+  expect(fields[0]).toMatchObject({ choices: ['mesh'] })
+  expect(shownItem('fixtures', mesh, { world: { xyz: [0, 0, 0], xyzw: [0, 0, 0, 1], frame: 'world' } })?.shape).toBeUndefined()
+})
+
 it('makes the edits of what was changed, and renames last', () => {
   const table = item('fixtures', 'table', { shape: 'box', size_m: [1, 1, 0.5], color: 'x', at: { xyz: [0, 0, 0] } })
   const fields = fieldsFor('fixtures', table.value, AROUND)

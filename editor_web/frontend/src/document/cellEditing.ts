@@ -52,6 +52,11 @@ const SHAPES: Readonly<Record<'fixtures' | 'parts', readonly string[]>> = {
   parts: ['box', 'cylinder', 'sphere'],
 }
 const ORIGIN = [0, 0, 0] as const
+const MESH_FIELDS: readonly Field[] = [
+  { ...numbers('Metres per unit of the file', ['scale'], ['scale'], 'm', 1), minimum: 0 },
+  { ...numbers('Pieces at most', ['decomposition', 'parts'], ['pieces'], '', 64), minimum: 1 },
+  { ...numbers('Hollows are kept to', ['decomposition', 'error_m'], ['error'], 'm', 0.005), minimum: 0 },
+]
 const FIRST_SIZE_M = 0.1
 const NO_TOOL = 'no tool'
 
@@ -79,8 +84,9 @@ export function fieldsFor(section: Section, value: Dict<unknown>, around: Surrou
     case 'parts': {
       const shape = lookup(value, 'shape')
       return [
-        { kind: 'choice', path: ['shape'], label: 'Shape', usual: 'box', choices: SHAPES[section] },
-        { ...numbers('Size', ['size_m'], sizeNames(shape), 'm', undefined), minimum: 0 },
+        // A mesh stays one: its file is in the text.
+        { kind: 'choice', path: ['shape'], label: 'Shape', usual: 'box', choices: shape === 'mesh' ? [shape] : SHAPES[section] },
+        ...(shape === 'mesh' ? MESH_FIELDS : [{ ...numbers('Size', ['size_m'], sizeNames(shape), 'm', undefined), minimum: 0 }]),
         ...(shape === 'tray' ? [{ ...numbers('Wall', ['wall_m'], ['wall'], 'm', 0.005), minimum: 0 }] : []),
         place('Stands in', ['at', 'frame']),
         position('Position', 'at', 'xyz'),

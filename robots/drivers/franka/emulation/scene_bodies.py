@@ -22,7 +22,7 @@ def add_bodies(scene: ET.Element, cell: SimScene) -> None:
     """Add fixtures and parts, and contacts as the world of the engine has them, before the simulator starts.
 
     Raises:
-        CellError: a fixture has a spring, or a shape has another size.
+        CellError: a fixture has a spring or is a mesh, or a shape has another size.
     """
     option, world = scene.find("option"), scene.find("worldbody")
     assert option is not None
@@ -33,6 +33,8 @@ def add_bodies(scene: ET.Element, cell: SimScene) -> None:
     for fixture in cell.fixtures:
         if fixture.spring_n_m > 0.0:
             raise CellError("franky-sim has no fixtures on springs", where=fixture.name)
+        if fixture.mesh is not None:
+            raise CellError("franky-sim has no meshes", where=fixture.name, hint="emulate the arm with `driver: sim`")
         body = _body(world, fixture.name, fixture.pose)
         if fixture.shape == "tray":
             for centre, size in tray_boxes(fixture):

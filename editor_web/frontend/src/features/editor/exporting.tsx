@@ -6,6 +6,7 @@ import { fileTitle } from '../../document/path'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
 import { layOutByElk } from '../../components/elk'
+import { saveBlob } from '../../components/saveBlob'
 import { tokensOf } from '../../components/tokens'
 import { drawingOf } from './drawing'
 import { Picture } from './Picture'
@@ -23,8 +24,8 @@ export async function exportPicture(format: PictureFormat): Promise<void> {
     const { id } = editor()
     const svg = await pictureOfDraft()
     const name = `${fileTitle(id)}.${format}`
-    if (format === 'svg') download(name, new Blob([svg], { type: 'image/svg+xml' }))
-    else download(name, await (format === 'png' ? pngOf(svg) : documents.pdf(id, svg)))
+    if (format === 'svg') saveBlob(new Blob([svg], { type: 'image/svg+xml' }), name)
+    else saveBlob(await (format === 'png' ? pngOf(svg) : documents.pdf(id, svg)), name)
     showEditorNotice(`Exported ${name}`)
   } catch (error) {
     showEditorRefusal('Export', wordsOf(error))
@@ -65,13 +66,4 @@ async function pngOf(svg: string): Promise<Blob> {
   return new Promise((resolve, reject) =>
     canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large'))), 'image/png'),
   )
-}
-
-function download(name: string, content: Blob): void {
-  const link = document.createElement('a')
-  link.href = URL.createObjectURL(content)
-  link.download = name
-  link.click()
-  // The browser has taken it when the click has been handled; a moment later nobody needs it.
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000)
 }

@@ -1,15 +1,8 @@
 /** Saving what is plotted as a file. */
+import { saveBlob } from '../../components/saveBlob'
 import { tokensOf } from '../../components/tokens'
 import type { Dict } from '../../document/dict'
 import type { LegendEntry } from './Legend'
-
-export function saveBlob(blob: Blob, name: string): void {
-  const link = document.createElement('a')
-  link.href = URL.createObjectURL(blob)
-  link.download = name
-  link.click()
-  URL.revokeObjectURL(link.href)
-}
 
 /** What the columns of a file are called: topic, field and unit. */
 export function headingsOf(entries: readonly LegendEntry[]): Dict<string> {

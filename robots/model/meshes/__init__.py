@@ -1,0 +1,1 @@
+"""Meshes of fixtures: read from files, inspected, decomposed into convex pieces."""
