@@ -23,6 +23,7 @@ _UNMONITORED_S = 5.0
 _REACTION_S, _BRAKING_SHARE = 0.2, 0.4
 # At rest the path is checked at least this often.
 _LOOK_S = 0.25
+_SHORTEST_S = 0.001
 
 _log = logging.getLogger("flexcell.arm")
 
@@ -123,7 +124,8 @@ class GivenPathMotion(MonitoredMotion):
             patience_s = max(self._patience_s, _UNMONITORED_S) if found.is_unmonitored else self._patience_s
             if now_s - waits_since_s >= patience_s:
                 return await self._fail(found.reason)
-            timeout_s = min(_LOOK_S, waits_since_s + patience_s - now_s)
+            # Never so short that the clock stands still.
+            timeout_s = max(_SHORTEST_S, min(_LOOK_S, waits_since_s + patience_s - now_s))
 
     async def _predict(self) -> PredictedCollision | None:
         """Return what is on the remaining path; None if it is free."""

@@ -41,7 +41,6 @@ from robots.arm.scene_queries.path_planner import (
 )
 from robots.planning.request import JointGoal, PathGoal, PlanRefusal, PoseGoal
 from robots.port import Array
-from robots.scene.sim_scene import LOOSE_HINT
 from robots.supervise_goal import FEEDBACK_S
 from robots.workspace.workspace import Workspace
 
@@ -115,8 +114,6 @@ class FreeMotions:
     ) -> FreeMotionResult:
         """Plan the first path, or reject the goal; follow it, and replan with `onward` where it is blocked."""
         runner, workspace = self._runner, self._workspace
-        if runner.frames.loose:
-            raise GoalRejected(f"the base of {runner.name} is released", where=handle.address, hint=LOOSE_HINT)
         handle.feedback(self._feedback("planning"))
         workspace.require()
         try:

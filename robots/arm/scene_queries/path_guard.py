@@ -14,14 +14,13 @@ import numpy as np
 from engine.errors import PathBlocked
 from engine.skills.collision_options import CollisionOptions
 from robots.arm.scene_queries.attached_part_guard import AttachedPartGuard
-from robots.arm.scene_queries.path_planner import describe_contacts
+from robots.arm.scene_queries.path_planner import describe_contacts, with_fixed_base
 from robots.arm.scene_queries.unknown_space_check import UNKNOWN_SPACE_HINT, UnknownSpaceCheck
 from robots.model.mechanics.kinematics import ArmKinematics
 from robots.motion.slow_section import slow_section
 from robots.planning.request import CollisionRequest, PathCheck, PathCheckRequest, ToolContact
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
-from robots.scene.sim_scene import LOOSE_HINT
 from robots.workspace.path_reservations import is_reserved
 from robots.workspace.unknown_space import SLOW_SPEED
 from robots.workspace.workspace import Workspace
@@ -130,13 +129,7 @@ class PathGuard:
     async def check(self, trajectory: JointTrajectory, rules: PathRules, *, from_s: float) -> PathCheck:
         """Return where the remaining path is blocked in the current scene; raises as `admit` does."""
         workspace = self.workspace
-        scene = workspace.scene_for(self.arm)
-        if scene.arm(self.arm).placement.loose:
-            raise PathBlocked(
-                f"the base of {self.arm} is released: nobody knows where its path leads",
-                where=self.arm,
-                hint=LOOSE_HINT,
-            )
+        scene = with_fixed_base(workspace.scene_for(self.arm), self.arm)
         return await workspace.planners.check_path(
             PathCheckRequest(
                 scene=self._allowing(scene, rules.may_touch),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from engine.errors import RobotError
+from engine.errors import PathBlocked, RobotError
 from engine.messages import Pose
 from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning import PlanOptions
@@ -27,6 +27,7 @@ from robots.planning.request import (
 )
 from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
+from robots.scene.sim_scene import LOOSE_HINT
 from robots.vision.occupancy.inflated_occupancy import inflated
 from robots.workspace.path_reservations import describe_names
 from robots.workspace.unknown_space import SLOW_SPEED
@@ -177,7 +178,7 @@ class PathPlanner:
         occupancy: OccupancyGrid | None = None,
     ) -> PathSegment | PlanRefusal:
         options, workspace = self._options, self._workspace
-        scene = workspace.scene_for(self.arm)
+        scene = with_fixed_base(workspace.scene_for(self.arm), self.arm)
         answer = await workspace.planners.plan(
             PlanRequest(
                 scene=_without_others(scene, self.arm) if permanent else scene,
@@ -203,13 +204,22 @@ class PathPlanner:
     def _check_request(self, trajectory: JointTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
         workspace = self._workspace
         return PathCheckRequest(
-            scene=workspace.scene_for(self.arm),
+            scene=with_fixed_base(workspace.scene_for(self.arm), self.arm),
             arm=self.arm,
             trajectory=trajectory,
             from_s=from_s,
             occupancy=workspace.occupancy,
             margin_m=margin_m,
         )
+
+
+def with_fixed_base(scene: PlanningScene, arm: str) -> PlanningScene:
+    """Return the scene, for an arm whose path leads to a known place; raises PathBlocked while its base is loose."""
+    if scene.arm(arm).placement.loose:
+        raise PathBlocked(
+            f"the base of {arm} is released: nobody knows where its path leads", where=arm, hint=LOOSE_HINT
+        )
+    return scene
 
 
 def describe_contacts(pairs: tuple[NamePair, ...]) -> str:

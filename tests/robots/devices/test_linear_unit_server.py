@@ -20,7 +20,7 @@ from engine.skill import Action
 from engine.skills.device_moves import DeviceFault, MoveDevice, SimulateDeviceFault
 from engine.skills.linear_units import LinearUnitReading, PlanBasePull, ReadLinearUnit
 from engine.skills.motion import CartLinTask, ForwardKinematics, InverseKinematics, JointTrapVel
-from engine.skills.planning import MotionTarget, MoveFree
+from engine.skills.planning import Adaptation, MotionTarget, MoveFree, PlanOptions
 from engine.skills.planning_scene import CheckCollision
 from engine.skills.simulated_world import PushBody
 
@@ -144,6 +144,32 @@ async def test_nothing_is_planned_in_the_world_while_the_base_is_released() -> N
             assert "the base of arm is released" in await ended(cell, goal)
         await brakes(cell.bus, "locked")
         assert await ended(cell, CartLinTask(pose=home, duration_s=1.0)) == "succeeded"
+
+
+@pytest.mark.parametrize(
+    "goal",
+    [
+        MoveFree(
+            target=MotionTarget(pose=Pose(xyz=(0.6, -0.1, 0.9), xyzw=DOWN)),
+            options=PlanOptions(speed=0.05),
+            adaptation=Adaptation(patience_s=5.0),
+        ),
+        CartLinTask(pose=Pose(xyz=(0.6, -0.1, 0.6), xyzw=DOWN), duration_s=6.0),
+    ],
+    ids=["planned", "line"],
+)
+async def test_a_motion_under_way_stops_when_the_base_is_released(goal: Action[Any, Any]) -> None:
+    """It fails with the reason when nothing has changed for 5 s, and the clock goes on meanwhile."""
+    async with opened() as cell:
+        start_s = cell.bus.clock.now_s()
+        motion = cell.bus.send_goal(goal, to="arm")
+        await cell.bus.clock.sleep(2.7917)
+        await brakes(cell.bus, "released")
+        end = await motion.result()
+        assert str(end.status) == "aborted"
+        assert end.cause is not None
+        assert "the base of arm is released" in describe_cause(end.cause)
+        assert cell.bus.clock.now_s() - start_s < 14.0
 
 
 async def test_stuck_brakes_stay_closed_and_loose_ones_give_way() -> None:

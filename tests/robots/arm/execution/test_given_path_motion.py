@@ -197,6 +197,17 @@ async def test_a_stop_that_was_too_late_says_so(*, at_s: float, is_late: bool) -
         assert report.reason == "left/hand would touch wall" + late
 
 
+async def test_the_clock_goes_on_where_rounding_leaves_nothing_of_the_patience() -> None:
+    """From this time 5 s later is not yet 5 s ago, and what is left is too short to change the clock."""
+    async with moved() as one:
+        await asyncio.sleep(3.0 + 24 / 1000)
+        start_s = one.time_s
+        one.fake.change("wall", answer=RobotError("the planner is gone"))
+        report = await one.motion.report()
+        assert report.reason == "path monitoring is not available: the planner is gone"
+        assert one.time_s - start_s == pytest.approx(STOPPING_S + UNMONITORED_S, abs=0.01)
+
+
 async def test_an_arm_that_is_not_monitored_waits_five_seconds_for_the_next_check() -> None:
     async with moved() as one:
         one.fake.change("wall", answer=RobotError("the planner is gone"))
