@@ -84,7 +84,7 @@ class SceneFiles:
         )
         try:
             async with asyncio.timeout(self._limit_s):
-                said, _ = await process.communicate()
+                output, _ = await process.communicate()
         except TimeoutError as error:
             hint = "export it on the command line: flexcell cell export"
             raise CellError(f"the scene takes more than {self._limit_s:g} s", where=str(cell), hint=hint) from error
@@ -93,7 +93,7 @@ class SceneFiles:
                 process.kill()
                 await process.wait()
         if process.returncode:
-            refusal = _refusal(said, process.returncode)
+            refusal = _refusal(output, process.returncode)
             raise CellError(refusal.message, where=refusal.where or None, hint=refusal.hint or None)
 
 
@@ -111,9 +111,9 @@ def main() -> None:
         sys.exit(1)
 
 
-def _refusal(said: bytes, code: int) -> _Refusal:
+def _refusal(output: bytes, code: int) -> _Refusal:
     try:
-        return msgspec.json.decode(said, type=_Refusal)
+        return msgspec.json.decode(output, type=_Refusal)
     except msgspec.DecodeError:
         return _Refusal(message=f"the process that exports the scene has ended with {code}")
 

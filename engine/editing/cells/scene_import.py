@@ -49,14 +49,14 @@ def import_file(
         CellError: it is no such file, cannot be used, or its name is taken.
         DocumentError: the cell document is invalid.
     """
-    wanted = name if name is not None else _name_of(file)
+    chosen = name if name is not None else _name_of(file)
     if not file.is_file():
         raise CellError("there is no such file", where=str(file))
     match file.suffix.lower():
         case ".urdf":
-            return _import_urdf(file, cell, models, name=wanted)
+            return _import_urdf(file, cell, models, name=chosen)
         case suffix if suffix in MESH_SUFFIXES:
-            return _import_mesh(file, cell, models, name=wanted, scale=scale)
+            return _import_mesh(file, cell, models, name=chosen, scale=scale)
         case _:
             kinds = ", ".join((*MESH_SUFFIXES, ".urdf"))
             raise CellError("this is no mesh and no URDF", where=str(file), hint=f"give a file that ends in {kinds}")

@@ -25,7 +25,7 @@ _log = logging.getLogger("flexcell.meshes")
 _MOST_CORNERS = 64
 # CoACD needs minutes for more, and a hollow does not show in single triangles.
 _MOST_TRIANGLES = 4_000
-_SAID_FROM = 500
+_ANNOUNCED_FROM = 500
 # A third of the search that CoACD does by itself: half the time for about as many pieces.
 _SEARCH = {"mcts_nodes": 10, "mcts_iterations": 60}
 _RECIPE = "convex pieces 1"
@@ -46,7 +46,7 @@ def convex_pieces(
         CellError: the mesh cannot be read or has no volume, or is of more separate solids than pieces are allowed.
     """
     folder = cache if cache is not None else cache_dir()
-    wanted = decomposition if decomposition is not None else Decomposition()
+    limits = decomposition if decomposition is not None else Decomposition()
     try:
         data = file.read_bytes()
     except OSError as error:
@@ -56,8 +56,8 @@ def convex_pieces(
     options = (
         file.suffix.lower(),
         scale,
-        wanted.parts,
-        wanted.error_m,
+        limits.parts,
+        limits.error_m,
         _MOST_CORNERS,
         _MOST_TRIANGLES,
         *_SEARCH.values(),
@@ -66,26 +66,26 @@ def convex_pieces(
     kept = read_cached(folder, key)
     if kept is not None:
         return msgspec.msgpack.decode(kept, type=tuple[Piece, ...])
-    made = _decomposed(file, scale, wanted)
+    made = _decomposed(file, scale, limits)
     write_cached(folder, key, msgspec.msgpack.encode(made))
     return made
 
 
-def _decomposed(file: Path, scale: float, wanted: Decomposition) -> tuple[Piece, ...]:
+def _decomposed(file: Path, scale: float, limits: Decomposition) -> tuple[Piece, ...]:
     solids = read_solids(file, scale=scale).solids
-    if len(solids) > wanted.parts:
+    if len(solids) > limits.parts:
         raise CellError(
-            f"the mesh is of {len(solids)} separate solids, and `decomposition` allows {wanted.parts} pieces",
+            f"the mesh is of {len(solids)} separate solids, and `decomposition` allows {limits.parts} pieces",
             where=str(file),
             hint=f"write `decomposition: {{parts: {len(solids)}}}` or more, or remove what is small from the mesh",
         )
     triangles = sum(len(solid.faces) for solid in solids)
-    if triangles >= _SAID_FROM:
+    if triangles >= _ANNOUNCED_FROM:
         _log.warning("%s is decomposed into convex pieces, once: %d triangles take a while", file.name, triangles)
     pieces: list[Piece] = []
     for number, solid in enumerate(solids):
-        left = wanted.parts - len(pieces) - (len(solids) - number - 1)
-        pieces += _pieces_of(solid, error_m=wanted.error_m, most=left)
+        left = limits.parts - len(pieces) - (len(solids) - number - 1)
+        pieces += _pieces_of(solid, error_m=limits.error_m, most=left)
     return tuple(pieces)
 
 

@@ -31,7 +31,7 @@ async def test_a_scene_comes_in_each_format(tmp_path: Path) -> None:
     assert zipfile.ZipFile(io.BytesIO(urdf.content)).namelist() == ["bench.urdf"]
 
 
-async def test_an_invalid_cell_is_told_with_its_position(tmp_path: Path) -> None:
+async def test_an_invalid_cell_is_refused_with_its_position(tmp_path: Path) -> None:
     cell = cell_file(tmp_path, CELL.replace("[1, 1, 0.1]", "[1, 1]"))
     with pytest.raises(CellError, match="the size of a box has 3 lengths, not 2") as error:
         await SceneFiles().made(cell, "glb")

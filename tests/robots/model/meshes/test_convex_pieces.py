@@ -75,6 +75,6 @@ def test_one_piece_is_the_hull(tmp_path: Path) -> None:
     assert volume_m3((piece,)) == pytest.approx(0.3 * 0.2 * DEPTH_M)
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(CellError, match="the mesh cannot be read"):
         convex_pieces(tmp_path / "no.stl", scale=1.0, cache=tmp_path)

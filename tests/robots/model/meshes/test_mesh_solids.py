@@ -22,7 +22,7 @@ def test_a_closed_mesh_of_a_plausible_size_has_no_defects_in_any_format(tmp_path
     assert read_solids(file, scale=1.0).size_m.tolist() == pytest.approx([0.3, 0.2, 0.08], abs=1e-6)
 
 
-def test_a_file_in_millimetres_is_told_with_the_scale_that_fits(tmp_path: Path) -> None:
+def test_a_file_in_millimetres_is_reported_with_the_scale_that_fits(tmp_path: Path) -> None:
     file = write_mesh(tray(), tmp_path / "tray.stl", scale=1000.0)
     (defect,) = inspect_mesh(file, scale=1.0)
     assert (defect.key, defect.unusable) == ("file", False)
@@ -36,7 +36,7 @@ def test_a_scale_that_makes_a_mesh_too_small_is_where_the_finding_is(tmp_path: P
     assert (defect.key, defect.hint) == ("scale", "its numbers fit `scale: 1` for metres")
 
 
-def test_an_open_surface_is_told_with_the_number_of_its_open_edges(tmp_path: Path) -> None:
+def test_an_open_surface_is_reported_with_the_number_of_its_open_edges(tmp_path: Path) -> None:
     box = trimesh.creation.box((0.3, 0.2, 0.04))
     box.update_faces(box.face_normals[:, 2] < 0.5)
     (defect,) = inspect_mesh(write_mesh(box, tmp_path / "open.stl"), scale=1.0)
