@@ -70,8 +70,14 @@ class InstalledModels:
 
     def mesh_defects(self, file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
         """Return what is wrong with a mesh file of a fixture."""
-        from robots.model.meshes.mesh_solids import inspect_mesh
-
+        try:
+            from robots.model.meshes.mesh_solids import inspect_mesh
+        except ImportError as error:
+            message, hint = (
+                f"meshes need the package `{error.name}`, which is not installed",
+                "pip install 'flexcell[sim]'",
+            )
+            return (MeshDefect(message=message, hint=hint, unusable=True),)
         return inspect_mesh(file, scale=scale)
 
     def urdf_module(self, file: Path, *, name: str) -> UrdfModule:

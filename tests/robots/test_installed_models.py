@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 
 from engine.cell.cell_names import cell_names
 from engine.document.cell import load_cell
+from robots.installed_models import MODELS
 from robots.scene.scene_builder import build_scene
 from robots.sim.physics.cell_model import build_cell
 
@@ -30,3 +32,11 @@ def test_tools_and_planners_come_from_the_models() -> None:
     names = cell_names(load_cell(next(file for file in CELLS if file.stem == "irb4600"))).by_kind
     assert (names["tool"], names["magnet"], names["gripper"]) == ({"arm/magnet"}, {"arm"}, frozenset())
     assert {"fast", "stomp", "RRTConnect"} <= names["planner"]
+
+
+def test_a_mesh_is_reported_where_what_reads_it_is_not_installed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "robots.model.meshes.mesh_solids", None)
+    (defect,) = MODELS.mesh_defects(tmp_path / "a.stl", scale=1.0)
+    assert (defect.unusable, defect.hint) == (True, "pip install 'flexcell[sim]'")

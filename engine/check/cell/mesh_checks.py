@@ -13,6 +13,8 @@ from engine.document.cell_bodies import Fixture
 from engine.document.module_document import Module
 from engine.document.text.yaml_source import DocumentSource
 
+_MISSING = MeshDefect(message="there is no such file", hint="give its path from this document", unusable=True)
+
 
 def check_meshes(fixtures: Mapping[str, Fixture], source: DocumentSource, folder: Path) -> Iterator[Finding]:
     """Yield the findings of the meshes of fixtures, whose files are relative to `folder`."""
@@ -23,6 +25,15 @@ def check_meshes(fixtures: Mapping[str, Fixture], source: DocumentSource, folder
             code = "unusable-mesh" if defect.unusable else "suspect-mesh"
             message, position = f"`{fixture.file}`: {defect.message}", source.position(("fixtures", name, defect.key))
             yield new_finding(code, message, path="", position=position, hint=defect.hint)
+
+
+def missing_meshes(fixtures: Mapping[str, Fixture], source: DocumentSource, folder: Path) -> Iterator[Finding]:
+    """Yield the findings of meshes that are not there; no file is read."""
+    for name, fixture in fixtures.items():
+        if fixture.file is not None and not (folder / fixture.file).is_file():
+            position = source.position(("fixtures", name, "file"))
+            message = f"`{fixture.file}`: {_MISSING.message}"
+            yield new_finding("unusable-mesh", message, path="", position=position, hint=_MISSING.hint)
 
 
 def check_module(module: Module) -> tuple[Finding, ...]:
@@ -36,7 +47,7 @@ def inspected_mesh(file: Path, scale: float) -> tuple[MeshDefect, ...]:
         status = file.stat()
     except OSError:
         # The models are not asked for, which may not be installed.
-        return (MeshDefect(message="there is no such file", hint="give its path from this document", unusable=True),)
+        return (_MISSING,)
     return _inspected(file, scale, status.st_mtime_ns, status.st_size)
 
 

@@ -8,6 +8,7 @@ from typing import Literal, cast
 import msgspec
 
 from engine.cell.cell_items import TextExcerpts
+from engine.check.cell.mesh_checks import missing_meshes
 from engine.document.cell import cell_of_source
 from engine.document.cell_frames import poses_in_world
 from engine.document.module_document import module_of_source
@@ -58,18 +59,18 @@ def read_cell_draft(text: str, *, file: Path, kind: CellDocumentKind) -> CellDra
     try:
         source = parse_source(text, file=str(file))
         items = _items(source, text, kind)
-        frames = _frames(source, file, kind)
+        document = (cell_of_source if kind == "cell" else module_of_source)(source, file=file).document
+        frames = poses_in_world(document.frames, document.fixtures)
+        missing = missing_meshes(document.fixtures, source, file.parent)
+        findings = tuple(
+            _view(each.message, each.position, file, items, code=each.code, hint=each.hint) for each in missing
+        )
     except DocumentError as error:
         findings = tuple(_finding(each, file, items) for each in (error, *error.others))
     except OSError as error:
         message = f"a module cannot be read: {error.strerror}"
         findings = (_finding(DocumentError(message, where=str(error.filename)), file, items),)
     return CellDraft(text=text, hash=text_hash(text), kind=kind, items=items, findings=findings, frames=frames)
-
-
-def _frames(source: DocumentSource, file: Path, kind: CellDocumentKind) -> dict[str, Pose]:
-    document = (cell_of_source if kind == "cell" else module_of_source)(source, file=file).document
-    return poses_in_world(document.frames, document.fixtures)
 
 
 def _items(source: DocumentSource, text: str, kind: CellDocumentKind) -> tuple[DraftItem, ...]:
@@ -91,8 +92,13 @@ def _items(source: DocumentSource, text: str, kind: CellDocumentKind) -> tuple[D
 
 
 def _finding(error: DocumentError, file: Path, items: tuple[DraftItem, ...]) -> FindingView:
-    where = error.where
-    line, column, message = 0, 0, error.message
+    return _view(error.message, error.where, file, items, code="invalid-document", hint=error.hint or "")
+
+
+def _view(
+    message: str, where: object, file: Path, items: tuple[DraftItem, ...], *, code: str, hint: str
+) -> FindingView:
+    line, column = 0, 0
     if isinstance(where, Position) and where.file == str(file):
         line, column = where.line, where.column
     elif where is not None:
@@ -100,10 +106,10 @@ def _finding(error: DocumentError, file: Path, items: tuple[DraftItem, ...]) -> 
     item = next((each for each in items if each.line <= line <= each.end_line), None)
     return FindingView(
         severity="error",
-        code="invalid-document",
+        code=code,
         message=message,
         path=f"{item.section}/{item.name}" if item is not None else "",
         line=line,
         column=column,
-        hint=error.hint or "",
+        hint=hint,
     )

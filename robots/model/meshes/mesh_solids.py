@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -98,6 +99,9 @@ def inspect_mesh(file: Path, *, scale: float) -> tuple[MeshDefect, ...]:
     except CellError as error:
         return (MeshDefect(key="file", message=error.message, hint=error.hint or "", unusable=True),)
     defects: list[MeshDefect] = []
+    if find_spec("coacd") is None:
+        message = "a mesh with hollows is decomposed by the package `coacd`, which is not installed"
+        defects.append(MeshDefect(key="file", message=message, hint=_EXTRA, unusable=False))
     largest = float(read.size_m.max())
     if not PLAUSIBLE_M[0] <= largest <= PLAUSIBLE_M[1]:
         size = " x ".join(f"{edge:.4g}" for edge in read.size_m)

@@ -27,6 +27,7 @@ _KEEP = 0.1
 _LEAST_FACES = 150
 _RECIPE = f"visual mesh 1, keep {_KEEP}, least {_LEAST_FACES}"
 _ROUND = 32
+_SHARP_DEG = 30.0
 _PRIMITIVE_RECIPE = f"primitive 1, round {_ROUND}"
 _PLAIN: Rgba = (0.7, 0.7, 0.7, 1.0)
 
@@ -73,7 +74,18 @@ def file_visuals(path: Path, *, scale: float, colour: Rgba, cache: Path | None =
     """
     fixed = colour if path.suffix.lower() != ".dae" else None
     meshes = _meshes(path, cache if cache is not None else cache_dir())
-    return tuple(_adjusted(each, (scale, scale, scale), fixed) for each in meshes)
+    return tuple(_with_edges(_adjusted(each, (scale, scale, scale), fixed)) for each in meshes)
+
+
+def _with_edges(mesh: VisualMesh) -> VisualMesh:
+    """Return a mesh whose sharp edges are drawn as edges: what shades surfaces smoothly has vertices of each side."""
+    trimesh: Any = import_module("trimesh")
+    points = np.frombuffer(mesh.vertices, np.float32).reshape(-1, 3)
+    faces = np.frombuffer(mesh.faces, np.uint32).reshape(-1, 3)
+    whole = trimesh.Trimesh(vertices=points, faces=faces, process=False)
+    split = trimesh.graph.smooth_shade(whole, angle=np.radians(_SHARP_DEG), facet_minarea=None)
+    vertices, triangles = np.asarray(split.vertices, np.float32), np.asarray(split.faces, np.uint32)
+    return VisualMesh(vertices=vertices.tobytes(), faces=triangles.tobytes(), rgba=mesh.rgba)
 
 
 def _described(

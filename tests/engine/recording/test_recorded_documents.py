@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 import pytest
@@ -70,3 +71,15 @@ def test_a_name_that_leads_elsewhere_is_refused(tmp_path: Path, name: str) -> No
 def test_a_recording_without_its_behavior_says_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=r"the behavior is not in this recording \(give --behavior\)"):
         RecordedDocuments(behavior="b.yaml").unpack(tmp_path)
+
+
+def test_the_digests_of_meshes_go_along(project: Path) -> None:
+    """By the names that the cell has for them; the files do not."""
+    cell = project / "cells" / "cell.yaml"
+    (project / "cells" / "bin.stl").write_bytes(b"a mesh")
+    cell.write_text(
+        f"{CELL}world: {{kind: mujoco}}\nfixtures: {{bin: {{shape: mesh, file: bin.stl}}}}\n", encoding="utf-8"
+    )
+    documents = collect_documents(load_behavior(project / "work" / "outer.yaml"), load_cell(cell))
+    assert documents.meshes == {"bin.stl": hashlib.sha256(b"a mesh").hexdigest()}
+    assert "cells/bin.stl" not in documents.texts

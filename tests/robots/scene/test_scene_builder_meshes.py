@@ -128,6 +128,8 @@ def test_what_is_drawn_is_the_surface_of_the_file_in_the_colour_of_the_fixture(t
     assert drawn.rgba == pytest.approx((0x30 / 255, 0x70 / 255, 0xB0 / 255, 1.0))
     points = np.frombuffer(drawn.vertices, np.float32).reshape(-1, 3)
     assert np.ptp(points, axis=0) == pytest.approx([0.3, 0.2, DEPTH_M], abs=1e-6)
+    # Each of its 16 corners is drawn in three surfaces, with an edge between them.
+    assert (len(points), len(np.unique(points, axis=0))) == (48, 16)
 
 
 def test_exports_have_the_surface_and_what_touches_has_the_pieces(tmp_path: Path) -> None:

@@ -76,3 +76,15 @@ def test_a_module_has_poses_in_its_own_frame(tmp_path: Path) -> None:
     assert (draft.findings, list(draft.frames)) == ((), ["world", "tray"])
     text = MODULE + "robots: {}\n"
     assert read_cell_draft(text, file=tmp_path / "module.yaml", kind="module").findings[0].path == ""
+
+
+def test_a_mesh_that_is_not_there_is_found_at_its_fixture(tmp_path: Path) -> None:
+    text = CELL.replace("  table:", "  housing: {shape: mesh, file: housing.stl}\n  table:", 1)
+    line = text[: text.index("housing")].count("\n") + 1
+    draft = read(tmp_path, text)
+    (finding,) = draft.findings
+    assert (finding.code, finding.path, finding.severity) == ("unusable-mesh", "fixtures/housing", "error")
+    assert (finding.line, finding.message) == (line, "`housing.stl`: there is no such file")
+    assert "table" in draft.frames
+    (tmp_path / "behaviors" / "cells" / "housing.stl").write_bytes(b"solid")
+    assert read(tmp_path, text).findings == ()
