@@ -26,6 +26,7 @@ ItemKind = Literal[
     "equipment",
     "device",
     "module",
+    "bond",
     "fixture",
     "part",
     "frame",
@@ -171,6 +172,8 @@ def _items(cell: Cell) -> Iterator[CellItem]:
         yield CellItem(path=f"devices/{name}", kind="device", name=name, model=model, owner=owner(name))
     for name, part in document.parts.items():
         yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape, owner=owner(name))
+    for name, bond in document.bonds.items():
+        yield CellItem(path=f"bonds/{name}", kind="bond", name=name, model=bond.kind, owner=owner(name))
     for name, frame in document.frames.items():
         section = "connectors" if name in document.connectors else "frames"
         if name not in document.modules:
@@ -213,6 +216,8 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith(f"{item.name}/"))
         case "part":
             return tuple(each for each in known if each == "cell/parts")
+        case "bond":
+            return tuple(each for each in known if each == "cell/bonds")
         case "occupancy":
             return tuple(each for each in known if each.startswith("cell/occupancy"))
         case "world":

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal, cast, get_args
 
 import msgspec
 
@@ -20,8 +21,8 @@ from engine.messages import Pose
 
 CellDocumentKind = Literal["cell", "module"]
 SECTIONS: dict[CellDocumentKind, tuple[CellSection, ...]] = {
-    "cell": ("robots", "fixtures", "parts", "cameras", "frames", "connectors", "modules"),
-    "module": ("fixtures", "parts", "cameras", "frames"),
+    "cell": get_args(CellSection),
+    "module": ("fixtures", "parts", "cameras", "frames", "devices", "bonds"),
 }
 
 
@@ -38,8 +39,9 @@ class DraftItem(msgspec.Struct, frozen=True, kw_only=True):
 class CellDraft(msgspec.Struct, frozen=True, kw_only=True):
     """What a text says; one that cannot be read has findings and no items.
 
-    `frames` are the poses in the world, or in the frame of the module, of all that something may stand in; none while
-    the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item.
+    `frames` are the poses in the world, or in the frame of the module, of all that something may stand in, `parts`
+    those of parts, `positions` those of devices, by names in the cell; none while the text has errors. The path of a
+    finding is `fixtures/floor`, empty for one that is in no item.
     """
 
     text: str
@@ -48,28 +50,53 @@ class CellDraft(msgspec.Struct, frozen=True, kw_only=True):
     items: tuple[DraftItem, ...] = ()
     findings: tuple[FindingView, ...] = ()
     frames: dict[str, Pose] = {}
+    parts: dict[str, Pose] = {}
+    positions: dict[str, tuple[str, ...]] = {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Meaning:
+    """What a text without errors says beside its items."""
+
+    frames: dict[str, Pose] = field(default_factory=dict[str, Pose])
+    parts: dict[str, Pose] = field(default_factory=dict[str, Pose])
+    positions: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
 
 def read_cell_draft(text: str, *, file: Path, kind: CellDocumentKind) -> CellDraft:
     """Read and check a text as if it were in this file; modules that it names are read from disk."""
     items: tuple[DraftItem, ...] = ()
-    frames: dict[str, Pose] = {}
+    meaning = _Meaning()
     findings: tuple[FindingView, ...] = ()
     try:
         source = parse_source(text, file=str(file))
         items = _items(source, text, kind)
-        frames = _frames(source, file, kind)
+        meaning = _meaning(source, file, kind)
     except DocumentError as error:
         findings = tuple(_finding(each, file, items) for each in (error, *error.others))
     except OSError as error:
         message = f"a module cannot be read: {error.strerror}"
         findings = (_finding(DocumentError(message, where=str(error.filename)), file, items),)
-    return CellDraft(text=text, hash=text_hash(text), kind=kind, items=items, findings=findings, frames=frames)
+    return CellDraft(
+        text=text,
+        hash=text_hash(text),
+        kind=kind,
+        items=items,
+        findings=findings,
+        frames=meaning.frames,
+        parts=meaning.parts,
+        positions=meaning.positions,
+    )
 
 
-def _frames(source: DocumentSource, file: Path, kind: CellDocumentKind) -> dict[str, Pose]:
+def _meaning(source: DocumentSource, file: Path, kind: CellDocumentKind) -> _Meaning:
     document = (cell_of_source if kind == "cell" else module_of_source)(source, file=file).document
-    return poses_in_world(document.frames, document.fixtures)
+    poses = poses_in_world(document.frames, document.fixtures)
+    return _Meaning(
+        frames=poses,
+        parts={name: part.at.in_world(poses).pose() for name, part in document.parts.items()},
+        positions={name: tuple(device.positions) for name, device in document.devices.items()},
+    )
 
 
 def _items(source: DocumentSource, text: str, kind: CellDocumentKind) -> tuple[DraftItem, ...]:
