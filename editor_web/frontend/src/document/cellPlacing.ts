@@ -1,6 +1,7 @@
 /** An item that is dragged in the 3D view: the numbers of its form, snapped to steps and to connectors. Pure. */
 import type { CellDraft, DraftItem } from '../api/types'
-import { frameOf, placeKey, valueAt, withValue, type Section } from './cellEditing'
+import { valueAt, withValue, type Section } from './cellFields'
+import { frameOf, placeKey } from './cellShown'
 import { lookup, type Dict } from './dict'
 import { distance, roundedTo, seenFrom, type PlacedPose, type Vector } from './poses'
 import { rollPitchYaw } from './teaching'
@@ -18,9 +19,11 @@ export const DRAG_STEPS: Readonly<Record<Exclude<DragSteps, 'off'>, { readonly l
 /** So near to a connector an item is put onto it. */
 export const CONNECTOR_M = 0.03
 
-/** Can it be dragged? A module stands where its connector is. */
+const FIXED: ReadonlySet<Section> = new Set(['modules', 'equipment', 'devices', 'bonds'])
+
+/** Can it be dragged? A module stands where its connector is, a device and a bond where their bodies are. */
 export function canDrag(section: Section): boolean {
-  return section !== 'modules'
+  return !FIXED.has(section)
 }
 
 /** Can it be turned? A camera looks at a point. */

@@ -18,57 +18,7 @@ from engine.editing.cells.cell_edit import (
     SetCellField,
 )
 from tests.engine.editing.cells.cell_texts import edited, refusal
-
-PINS = """\
-flexcell: 1
-equipment: clamps
-backend: {kind: simulated}
-pins:
-  valve: {kind: digital_output, pin: 1, safe: false}
-  shut: {kind: digital_input, pin: 2}
-"""
-MODULE = """\
-flexcell: 1
-module: press
-fixtures:
-  ram: {shape: box, size_m: [0.1, 0.1, 0.1]}
-devices:
-  lift:
-    axes:
-      up: {joint: slide, body: ram, along: [0, 0, 1], stroke_m: 0.1, force_n: 10, speed_m_s: 0.1, output: lift_up}
-    positions:
-      top: {steps: [{set: {lift_up: true}}], time: 1 s}
-"""
-CELL = """\
-flexcell: 1
-cell: bench
-world: {kind: mujoco}
-equipment:
-  valves: {pins: clamps.yaml}   # in the rack
-connectors:
-  dock: {at: {xyz: [1, 0, 0]}}
-modules:
-  press: {module: press, connector: dock}
-fixtures:
-  jaw: {shape: box, size_m: [0.1, 0.1, 0.1], at: {xyz: [0, 0, 0.1]}}
-  stop: {shape: box, size_m: [0.1, 0.1, 0.1], at: {xyz: [0.2, 0, 0.1]}}
-parts:
-  lid: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1, at: {xyz: [0.2, 0, 0.1551]}}
-devices:
-  clamp:
-    equipment: valves
-    axes:   # one only
-      main: {joint: slide, body: jaw, along: [1, 0, 0], stroke_m: 0.05, force_n: 40, speed_m_s: 0.10, against: [stop],
-             output: valve}
-    sensors:
-      shut: {axis: main, at_least: 0.04}
-    positions:
-      closed: {steps: [{set: {valve: true}}], sensors: {shut: true}, time: 2 s}
-    interlocks:
-      - {position: closed, device: press/lift, at: top}
-bonds:
-  glue: {kind: glue, part: lid, to: stop, force_n: 8.0}
-"""
+from tests.engine.editing.cells.device_texts import CELL, write_device_cell
 
 
 def sections_of(text: str) -> dict[str, Any]:
@@ -79,10 +29,7 @@ def sections_of(text: str) -> dict[str, Any]:
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     """The cell with its module and its pins on disk."""
-    (tmp_path / "press").mkdir()
-    (tmp_path / "press" / "module.yaml").write_text(MODULE)
-    (tmp_path / "clamps.yaml").write_text(PINS)
-    return tmp_path / "bench.yaml"
+    return write_device_cell(tmp_path)
 
 
 @pytest.mark.parametrize(

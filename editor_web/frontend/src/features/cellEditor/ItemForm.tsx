@@ -7,19 +7,13 @@ import { Refusal } from '../../components/Refusal'
 import { namingBehaviorsQuery } from '../../api/cellDocuments'
 import { useAnswer } from '../../api/queryClient'
 import type { DraftItem } from '../../api/types'
-import {
-  editsBetween,
-  fieldsFor,
-  itemAddress,
-  keyOf,
-  nameFault,
-  shownItem,
-  valueAt,
-  withShape,
-  withValue,
-  type Surroundings,
-} from '../../document/cellEditing'
+import { withoutEntry } from '../../document/cellDevices'
+import { editsBetween, groupsFor, itemAddress, nameFault, withField } from '../../document/cellEditing'
+import { keyOf, valueAt, type Surroundings } from '../../document/cellFields'
 import { canDrag, canTurn, DRAG_STEPS, draggedTo, type DragSteps } from '../../document/cellPlacing'
+import { shownItem } from '../../document/cellShown'
+import { lookup, type Dict } from '../../document/dict'
+import { AddEntry, EntryGroup } from './EntryGroup'
 import { FieldInput, fieldFault } from './FieldInput'
 import { edit } from './session'
 import { cellEditor, draftOf, setCellEditor, useCellEditor } from './store'
@@ -36,20 +30,26 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   const { section, name, value } = item
   const [next, setNext] = useState(value)
   const [newName, setNewName] = useState(name)
-  const frames = useCellEditor((s) => draftOf(s).frames)
+  const [entryNames, setEntryNames] = useState<Dict<string>>({})
+  const [axis, setAxis] = useState('')
+  const draft = useCellEditor(draftOf)
   const kind = useCellEditor((s) => draftOf(s).kind)
   const findings = useCellEditor((s) => draftOf(s).findings)
   const { value: naming } = useAnswer(namingBehaviorsQuery(kind === 'cell' && newName !== name ? name : ''))
   const path = `${section}/${name}`
-  const fields = fieldsFor(section, next, {
+  const groups = groupsFor(section, next, {
     ...surroundings,
     // Nothing stands in itself; the connector that a module has is not free for others.
     frames: surroundings.frames.filter((each) => each !== name && !each.startsWith(`${name}/`)),
   })
-  const edits = editsBetween(item, next, newName, fields)
-  const fault = nameFault(newName) ?? fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
+  const fields = groups.flatMap((each) => each.fields)
+  const edits = editsBetween(item, next, newName, fields, entryNames)
+  const names = [newName, ...Object.values(entryNames)]
+  const fault =
+    names.map(nameFault).find((each) => each !== undefined) ??
+    fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
   const steps = useCellEditor((s) => s.steps)
-  const shown = kind === 'cell' ? shownItem(section, next, frames) : undefined
+  const shown = kind === 'cell' ? shownItem(section, next, draft, axis) : undefined
   useShownItem(shown)
   useItemHandle(canDrag(section) && steps !== 'off' ? shown?.pose : undefined, canTurn(section), (pose) => {
     if (steps !== 'off') setNext((now) => draggedTo({ section, name, value: now }, pose, draftOf(cellEditor()), steps))
@@ -102,18 +102,30 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
                   : `neither do these behaviors: ${naming.map((each) => `${each.name} (${each.paths.length})`).join(', ')}.`}
             </Text>
           )}
-          {fields.map((field) => (
-            <FieldInput
-              key={keyOf(field.path)}
-              field={field}
-              value={valueAt(next, field.path)}
-              onChange={(made) =>
-                setNext(
-                  keyOf(field.path) === 'shape' && typeof made === 'string' ? withShape(next, made) : withValue(next, field.path, made),
-                )
-              }
-            />
-          ))}
+          {groups.map((group) => {
+            const [of = '', entry = ''] = group.entry ?? []
+            const key = keyOf([of, entry])
+            return (
+              <EntryGroup
+                key={group.title}
+                group={group}
+                newName={lookup(entryNames, key) ?? entry}
+                onName={(to) => setEntryNames({ ...entryNames, [key]: to })}
+                onRemove={() => setNext(withoutEntry(next, of, entry))}
+                onFocus={() => of === 'axes' && setAxis(entry)}
+              >
+                {group.fields.map((field) => (
+                  <FieldInput
+                    key={keyOf(field.path)}
+                    field={field}
+                    value={valueAt(next, field.path)}
+                    onChange={(made) => setNext(withField(next, field, made))}
+                  />
+                ))}
+              </EntryGroup>
+            )
+          })}
+          {section === 'devices' && <AddEntry device={next} surroundings={surroundings} onAdd={setNext} />}
           {fault !== undefined && (
             <Text size="xs" c="var(--failed)" role="status">
               {fault}
@@ -142,6 +154,7 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
           onClick={() => {
             setNext(value)
             setNewName(name)
+            setEntryNames({})
           }}
         >
           Reset

@@ -23,7 +23,7 @@ export interface CellEditorState {
   readonly steps: DragSteps
 }
 
-const NOTHING: CellText = { text: '', hash: '', kind: 'cell', items: [], findings: [], frames: {} }
+const NOTHING: CellText = { text: '', hash: '', kind: 'cell', items: [], findings: [], frames: {}, parts: {}, positions: {} }
 
 export function blank(): CellEditorState {
   return {

@@ -1,7 +1,7 @@
 /** Shows in the 3D view of this page where an item will be: its axes, and its body as a ghost. */
 import { useEffect } from 'react'
 import { connectTeach, sendToServer, useTeach } from '../../api/teaching'
-import type { ShownItem } from '../../document/cellEditing'
+import type { ShownItem } from '../../document/cellShown'
 
 const PAUSE_MS = 60
 const NO_MARKS = { k: 'mark', points: [], box: null, axes: null, body: null } as const
