@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from engine.cell import CameraCoverage, RobotModels, RobotSummary, ToolKind
+from engine.cell import CameraCoverage, RestContact, RobotModels, RobotSummary, ToolKind
 from engine.document import Cell
 from engine.skills.arm_target import StaticCell
 from robots.tool_kinds import kind_of_mechanism, tool_kinds
@@ -67,6 +67,12 @@ class InstalledModels:
         from robots.vision.camera_coverage import camera_coverage
 
         return camera_coverage(cell)
+
+    def rest_contacts(self, cell: Cell) -> tuple[RestContact, ...]:
+        """Return the bodies that touch at rest; raises CellError or DocumentError for an invalid cell."""
+        from robots.planning.scene.rest_contacts import rest_contacts
+
+        return rest_contacts(cell)
 
     def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
         """Write the scene of a cell for other programs; raises CellError or DocumentError as its writer does."""

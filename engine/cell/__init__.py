@@ -13,6 +13,7 @@ _HOMES = {
     "DeviceDetails": "engine.cell.device_details",
     "ModelNames": "engine.cell.robot_models",
     "OpenCell": "engine.cell.open_cell",
+    "RestContact": "engine.cell.rest_contacts",
     "RegionCoverage": "engine.cell.camera_coverage",
     "RobotModels": "engine.cell.robot_models",
     "RobotSummary": "engine.cell.robot_models",

@@ -91,12 +91,13 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
         return CellItems(cell=name, description="", file="", changed=False, items=())
     text = _read(cell.file)
     modules = {name: _read(module.file) for name, module in cell.modules.items()}
+    pins = tuple(_read(each.file) for each in cell.pins.values())
     items = tuple(_with_lines(item, cell, text, modules) for item in named_items(cell, topics=topics))
     return CellItems(
         cell=name,
         description=cell.document.description,
         file=cell.file.name,
-        changed=tuple(each.data for each in (text, *modules.values())) != cell.content,
+        changed=tuple(each.data for each in (text, *modules.values(), *pins)) != cell.content,
         items=items,
     )
 

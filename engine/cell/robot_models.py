@@ -14,6 +14,7 @@ from typing import Protocol
 import msgspec
 
 from engine.cell.camera_coverage import CameraCoverage
+from engine.cell.rest_contacts import RestContact
 from engine.cell.tool_kind import ToolKind
 from engine.document.cell import Cell
 from engine.errors import RegistryError
@@ -79,6 +80,15 @@ class RobotModels(Protocol):
 
         Raises:
             CellError: the cell has no cameras with a map, or cannot be simulated.
+            DocumentError: as `summary`.
+        """
+        ...
+
+    def rest_contacts(self, cell: Cell) -> tuple[RestContact, ...]:
+        """Return the bodies that touch with all arms at home, and arms that are nearly in contact.
+
+        Raises:
+            CellError: the scene of the cell cannot be built.
             DocumentError: as `summary`.
         """
         ...

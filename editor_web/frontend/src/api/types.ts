@@ -1554,11 +1554,12 @@ export interface MappedName {
   readonly paths: readonly string[]
 }
 
-/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `pose` is that of its centre in the world. */
+/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `pose` is that of its centre in the world. With `warns` it is red. */
 export interface MarkedBody {
   readonly shape: "box" | "cylinder" | "sphere"
   readonly size_m: readonly number[]
   readonly pose: readonly [readonly [number, number, number], readonly [number, number, number, number]]
+  readonly warns?: boolean
 }
 
 /** The distribution of a measure over the runs that succeeded, and over those that did not. */

@@ -21,7 +21,7 @@ interface EntryGroupProps {
 export function EntryGroup({ group, newName, onName, onRemove, onFocus, children }: EntryGroupProps) {
   if (!group.title) return children
   return (
-    <Stack gap="xs" pt="xs" role="group" aria-label={group.title} onFocusCapture={onFocus} style={{ borderTop: '1px solid var(--border)' }}>
+    <Stack gap="xs" pt="xs" role="group" aria-label={group.title} onFocusCapture={onFocus} style={{ borderTop: '1px solid var(--line)' }}>
       <Group gap="xs" wrap="nowrap">
         <Text size="sm" fw={600} flex={1} truncate>
           {group.title}

@@ -1,5 +1,5 @@
 /** The form of an item: what is changed is applied as edits, the name with it, and nothing that cannot be. */
-import { fireEvent, screen, waitFor, within } from '@testing-library/react'
+import { act, fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
 import { server, show } from '../../../testing/page'
 import type { CellDraft, DraftItem } from '../../api/types'
@@ -7,7 +7,7 @@ import { surroundingsOf } from '../../document/cellEditing'
 import { AddMenu } from './AddMenu'
 import { ItemForm } from './ItemForm'
 import { openCellDocument } from './session'
-import { cellEditor, draftOf } from './store'
+import { cellEditor, draftOf, setCellEditor } from './store'
 
 const ID = 'behaviors/cells/bench.yaml'
 const EDITS = `POST /cell_documents/${ID}/edits`
@@ -187,4 +187,13 @@ it('writes a limit of a bond that has none only when it is given', async () => {
       { field: ['torque_nm'], value: 0.5 },
     ],
   })
+})
+
+it('says what an item touches at rest, and hinders nothing', async () => {
+  const { write, apply } = form()
+  const touching = { severity: 'warning', code: 'collision-at-rest', path: 'fixtures/table', line: 3, column: 1, hint: 'move one' }
+  act(() => setCellEditor({ rest: [{ ...touching, message: '`left/hand` and `table` overlap by 3.0 mm' }] }))
+  expect(screen.getByText(/overlap by 3.0 mm/)).toBeVisible()
+  await write('Position z', '0.40')
+  expect(apply).toBeEnabled()
 })

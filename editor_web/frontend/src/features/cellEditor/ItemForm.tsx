@@ -1,6 +1,6 @@
 /** The properties of one item: what is changed here is seen in 3D at once, and in the document when it is applied. */
 import { Button, Group, NativeSelect, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
-import { IconTrash } from '@tabler/icons-react'
+import { IconAlertTriangle, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { CommandButton } from '../../components/CommandButton'
 import { Refusal } from '../../components/Refusal'
@@ -50,7 +50,8 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
     fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
   const steps = useCellEditor((s) => s.steps)
   const shown = kind === 'cell' ? shownItem(section, next, draft, axis) : undefined
-  useShownItem(shown)
+  const touching = useCellEditor((s) => s.rest).filter((each) => each.path === path)
+  useShownItem(shown, touching.length > 0)
   useItemHandle(canDrag(section) && steps !== 'off' ? shown?.pose : undefined, canTurn(section), (pose) => {
     if (steps !== 'off') setNext((now) => draggedTo({ section, name, value: now }, pose, draftOf(cellEditor()), steps))
   })
@@ -85,6 +86,11 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
                 {each.message}
               </Refusal>
             ))}
+          {touching.map((each) => (
+            <Text key={each.message} size="xs" c="var(--stopped)" role="status">
+              <IconAlertTriangle size={13} aria-hidden /> {each.message} – {each.hint}
+            </Text>
+          ))}
           <TextInput
             size="xs"
             label="Name"
