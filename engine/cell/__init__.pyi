@@ -5,6 +5,7 @@ from engine.cell.cell_connection import CellConnection
 from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_items
 from engine.cell.device_details import DeviceDetails, devices_of_cell
 from engine.cell.open_cell import OpenCell
+from engine.cell.reach_map import ReachDirection, ReachLevel, ReachPoint
 from engine.cell.rest_contacts import RestContact
 from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
 from engine.cell.tool_kind import ToolKind
@@ -17,6 +18,9 @@ __all__ = [
     "DeviceDetails",
     "ModelNames",
     "OpenCell",
+    "ReachDirection",
+    "ReachLevel",
+    "ReachPoint",
     "RegionCoverage",
     "RestContact",
     "RobotModels",

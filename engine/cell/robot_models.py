@@ -6,7 +6,7 @@ connected or simulated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Protocol
@@ -14,6 +14,7 @@ from typing import Protocol
 import msgspec
 
 from engine.cell.camera_coverage import CameraCoverage
+from engine.cell.reach_map import ReachDirection, ReachLevel
 from engine.cell.rest_contacts import RestContact
 from engine.cell.tool_kind import ToolKind
 from engine.document.cell import Cell
@@ -80,6 +81,15 @@ class RobotModels(Protocol):
 
         Raises:
             CellError: the cell has no cameras with a map, or cannot be simulated.
+            DocumentError: as `summary`.
+        """
+        ...
+
+    def reach(self, cell: Cell, robot: str, *, step_m: float, direction: ReachDirection) -> Iterator[ReachLevel]:
+        """Yield where the tool centre point of an arm of the cell gets, coarse first, whatever else stands there.
+
+        Raises:
+            CellError: the cell has no such robot, or as `summary`.
             DocumentError: as `summary`.
         """
         ...

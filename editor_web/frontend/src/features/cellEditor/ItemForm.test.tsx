@@ -3,6 +3,8 @@ import { act, fireEvent, screen, waitFor, within } from '@testing-library/react'
 import { beforeEach, expect, it, vi } from 'vitest'
 import { server, show } from '../../../testing/page'
 import type { CellDraft, DraftItem } from '../../api/types'
+import { useLive } from '../../api/live'
+import { useWizard } from '../../api/valueWizard'
 import { surroundingsOf } from '../../document/cellEditing'
 import { AddMenu } from './AddMenu'
 import { ItemForm } from './ItemForm'
@@ -196,4 +198,21 @@ it('says what an item touches at rest, and hinders nothing', async () => {
   expect(screen.getByText(/overlap by 3.0 mm/)).toBeVisible()
   await write('Position z', '0.40')
   expect(apply).toBeEnabled()
+})
+
+it('is taught with an arm where the cell has one; the pose is seen from what it stands in', async () => {
+  const at = (x: number) => ({ xyz: [x, 0, 0] as const, xyzw: [0, 0, 0, 1] as const, frame: 'world' })
+  const standing: CellDraft = { ...DRAFT, frames: { world: at(0), table: at(1) } }
+  server().on(`GET /cell_documents/${ID}`, { id: ID, saved_at: 1, draft: standing })
+  await openCellDocument(ID)
+  const slot: DraftItem = { ...TABLE, section: 'frames', name: 'slot', value: { parent: 'table' } }
+  const user = show(<ItemForm item={slot} surroundings={surroundingsOf(standing, MODELS)} onSelect={vi.fn()} />)
+  expect(screen.getByRole('button', { name: 'Teach with an arm' })).toHaveAttribute('aria-disabled', 'true')
+  act(() => useLive.setState({ robots: { left: {} as never } }))
+  await user.click(screen.getByRole('button', { name: 'Teach with an arm' }))
+  const asked = useWizard.getState().asked
+  expect(asked).toMatchObject({ kind: 'pose', title: 'slot', isFrame: true, frames: [], value: { xyz: [1, 0, 0] } })
+  act(() => asked?.onSet({ xyz: [1.25, 0.5, 0], xyzw: [0, 0, 0, 1] }))
+  expect(screen.getByLabelText('Position x')).toHaveValue('0.25')
+  expect(screen.getByLabelText('Position y')).toHaveValue('0.5')
 })

@@ -1,18 +1,21 @@
 /** The properties of one item: what is changed here is seen in 3D at once, and in the document when it is applied. */
 import { Button, Group, NativeSelect, ScrollArea, Stack, Text, TextInput } from '@mantine/core'
-import { IconAlertTriangle, IconTrash } from '@tabler/icons-react'
+import { IconAlertTriangle, IconHandFinger, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { CommandButton } from '../../components/CommandButton'
 import { Refusal } from '../../components/Refusal'
 import { namingBehaviorsQuery } from '../../api/cellDocuments'
+import { useLive } from '../../api/live'
 import { useAnswer } from '../../api/queryClient'
 import type { DraftItem } from '../../api/types'
+import { askWizard } from '../../api/valueWizard'
 import { withoutEntry } from '../../document/cellDevices'
 import { editsBetween, groupsFor, itemAddress, nameFault, withField } from '../../document/cellEditing'
 import { keyOf, valueAt, type Surroundings } from '../../document/cellFields'
-import { canDrag, canTurn, DRAG_STEPS, draggedTo, type DragSteps } from '../../document/cellPlacing'
+import { canDrag, canTurn, DRAG_STEPS, draggedTo, taughtAt, taughtPose, type DragSteps } from '../../document/cellPlacing'
 import { shownItem } from '../../document/cellShown'
 import { lookup, type Dict } from '../../document/dict'
+import type { PlacedPose } from '../../document/poses'
 import { AddEntry, EntryGroup } from './EntryGroup'
 import { FieldInput, fieldFault } from './FieldInput'
 import { edit } from './session'
@@ -48,6 +51,7 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   const fault =
     names.map(nameFault).find((each) => each !== undefined) ??
     fields.map((field) => fieldFault(field, valueAt(next, field.path))).find((each) => each !== undefined)
+  const arms = useLive((s) => Object.keys(s.robots).length)
   const steps = useCellEditor((s) => s.steps)
   const shown = kind === 'cell' ? shownItem(section, next, draft, axis) : undefined
   const touching = useCellEditor((s) => s.rest).filter((each) => each.path === path)
@@ -55,6 +59,24 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
   useItemHandle(canDrag(section) && steps !== 'off' ? shown?.pose : undefined, canTurn(section), (pose) => {
     if (steps !== 'off') setNext((now) => draggedTo({ section, name, value: now }, pose, draftOf(cellEditor()), steps))
   })
+
+  /** Its place in the world as the arms are now; what it stands in is where the draft says. */
+  function teach(pose: PlacedPose): void {
+    askWizard({
+      kind: 'pose',
+      title: name,
+      arm: '',
+      value: { xyz: pose.xyz, xyzw: pose.xyzw },
+      form: 'xyzw',
+      frames: [],
+      meant: (frame) => frame,
+      isFrame: true,
+      onSet: (made) => {
+        const taught = taughtPose(made)
+        if (taught) setNext((now) => taughtAt({ section, value: now }, taught, draftOf(cellEditor())))
+      },
+    })
+  }
 
   async function apply(): Promise<void> {
     if (edits.length === 0 || fault !== undefined) return
@@ -136,6 +158,15 @@ export function ItemForm({ item, surroundings, onSelect }: ItemFormProps) {
             <Text size="xs" c="var(--failed)" role="status">
               {fault}
             </Text>
+          )}
+          {kind === 'cell' && canTurn(section) && (
+            <CommandButton
+              label="Teach with an arm"
+              icon={<IconHandFinger size={14} aria-hidden />}
+              hint="Its place by three points of the tool, or by the pose of the tool"
+              obstacle={arms === 0 ? 'the open cell has no arm' : shown ? undefined : 'where it stands in is not known'}
+              onPress={() => shown && teach(shown.pose)}
+            />
           )}
           {kind === 'cell' && canDrag(section) && (
             <NativeSelect

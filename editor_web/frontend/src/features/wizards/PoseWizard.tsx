@@ -44,7 +44,7 @@ interface PoseWizardProps {
 
 export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardProps) {
   const [arm, setArm] = useArm(asked.arm)
-  const [method, setMethod] = useState<'place' | 'points'>('place')
+  const [method, setMethod] = useState<'place' | 'points'>(asked.isFrame ? 'points' : 'place')
   const [frame, setFrame] = useState(() => frameOf(asked.value))
   const [pose, setPose] = useState(() => poseOf(asked.value))
   const [cell, setCell] = useState<CellStateFrame>()
@@ -113,7 +113,7 @@ export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardPr
       {method === 'place' ? (
         <TakePose arm={arm} obstacle={unplaced} tool={tool} onTake={takeWorld} />
       ) : (
-        <ThreePoints arm={arm} onMade={takeWorld} />
+        <ThreePoints arm={arm} isFrame={asked.isFrame === true} onMade={takeWorld} />
       )}
       <PoseFields pose={pose} onChange={setPose} />
     </WizardFrame>
@@ -141,10 +141,16 @@ function TakePose({ arm, tool, obstacle, onTake }: TakePoseProps) {
   )
 }
 
+interface ThreePointsProps {
+  readonly arm: string
+  readonly isFrame: boolean
+  readonly onMade: (pose: PlacedPose) => void
+}
+
 /** A frame by its origin, a point on x and one on the side of y. */
-function ThreePoints({ arm, onMade }: { readonly arm: string; readonly onMade: (pose: PlacedPose) => void }) {
+function ThreePoints({ arm, isFrame, onMade }: ThreePointsProps) {
   const [points, setPoints] = useState<Dict<Vector>>({})
-  const [isFlipped, setFlipped] = useState(true)
+  const [isFlipped, setFlipped] = useState(!isFrame)
   const [o, x, y] = ['origin', 'onX', 'onY'].map((name) => lookup(points, name))
   const made = o && x && y ? threePointFrame(o, x, y) : undefined
   const set = (name: string) => (point: Vector) => setPoints({ ...points, [name]: point })
