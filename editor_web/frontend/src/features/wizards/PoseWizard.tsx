@@ -1,5 +1,5 @@
 /** A pose: taught in place with the tool, made of three points, or typed; in the world or seen from a frame of the cell. */
-import { NativeSelect, SegmentedControl, Stack, Switch } from '@mantine/core'
+import { NativeSelect, SegmentedControl, Stack, Switch, Text } from '@mantine/core'
 import { IconFocusCentered } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { Refusal } from '../../components/Refusal'
@@ -9,6 +9,8 @@ import type { PoseRequest } from '../../api/valueWizard'
 import { CommandButton } from '../../components/CommandButton'
 import { fieldsOf, lookup, type Dict } from '../../document/dict'
 import {
+  angleAt,
+  distance,
   FLIPPED,
   frameOf,
   inWorld,
@@ -176,6 +178,11 @@ function ThreePoints({ arm, isFrame, onMade }: ThreePointsProps) {
         />
       </div>
       <Refusal>{made?.fault}</Refusal>
+      {made?.value && o && x && y && (
+        <Text size="xs" c="dimmed" role="status">
+          {`The points are ${(distance(o, x) * 1000).toFixed(1)} and ${(distance(o, y) * 1000).toFixed(1)} mm from the origin, and ${degrees(angleAt(o, x, y)).toFixed(2)}° apart: 90° at a square corner.`}
+        </Text>
+      )}
     </Stack>
   )
 }
