@@ -32,7 +32,6 @@ from engine.cell import (
     items_of_cell,
     model_names,
 )
-from engine.document.module_document import MODULE_FILE
 from engine.editing import ReferringBehavior
 from engine.editing.cells import CellDocumentName, CellDraft, CellEditAnswer
 
@@ -113,8 +112,8 @@ async def find_contacts_at_rest(document_id: str, body: TargetsBody, services: S
 
     A module alone has none.
     """
-    file = services.documents.cells.file_of(document_id)
-    if file.name == MODULE_FILE:
+    file = services.documents.cells.cell_file(document_id)
+    if file is None:
         return TargetFindingsBody()
     checked = await services.targets.findings(f"{body.page} {document_id}", file, body.text, of="cell")
     if checked is None:

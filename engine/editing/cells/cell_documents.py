@@ -89,7 +89,7 @@ class CellDocuments:
             NoSuchDocument: this is not the open cell and no module of the project.
             DocumentError: it cannot be read as text.
         """
-        file = self.file_of(document_id)
+        file = self._file_of(document_id)
         stored = read_stored(document_id, file)
         with self._writing, writing_errors(document_id):
             self._versions.keep(document_id, stored.text)
@@ -97,12 +97,12 @@ class CellDocuments:
 
     def examine(self, document_id: str, text: str) -> CellDraft:
         """Return what a text says, as if it were the document's."""
-        file = self.file_of(document_id)
+        file = self._file_of(document_id)
         return read_cell_draft(text, file=file, kind=self._kind_of(file))
 
     def edit(self, document_id: str, text: str, edits: Sequence[AnyCellEdit]) -> CellEditAnswer:
         """Apply edits to a text, all or none; nothing is saved."""
-        made, refused = apply_cell_edits(text, edits, file=str(self.file_of(document_id)))
+        made, refused = apply_cell_edits(text, edits, file=str(self._file_of(document_id)))
         return CellEditAnswer(draft=self.examine(document_id, made), refused=refused)
 
     def save(self, document_id: str, text: str, *, base_hash: str) -> StoredDocument:
@@ -118,7 +118,7 @@ class CellDocuments:
             NoSuchDocument: this is no such document, or it no longer exists.
             DocumentError: the text is not a mapping, or the file cannot be written.
         """
-        file = self.file_of(document_id)
+        file = self._file_of(document_id)
         if not isinstance(parse_source(text, file=document_id).data, dict):
             raise DocumentError("the document is not a mapping", where=document_id, hint="begin it with `flexcell: 1`")
         with self._writing, writing_errors(document_id):
@@ -151,8 +151,12 @@ class CellDocuments:
     def _kind_of(self, file: Path) -> CellDocumentKind:
         return "cell" if file == self._cell_file else "module"
 
-    def file_of(self, document_id: str) -> Path:
-        """Return the file of a document; raises NoSuchDocument as `open` does."""
+    def cell_file(self, document_id: str) -> Path | None:
+        """Return the file of the cell; None for a document of a module. Raises NoSuchDocument as `open` does."""
+        file = self._file_of(document_id)
+        return file if self._kind_of(file) == "cell" else None
+
+    def _file_of(self, document_id: str) -> Path:
         if any(part.startswith(".") or part in _SKIPPED for part in document_id.split("/")):
             raise _no_document(document_id)
         file = self._project / document_id

@@ -91,7 +91,7 @@ async def test_behaviors_that_name_an_item_are_listed(tmp_path: Path) -> None:
         assert (await http.get("/cell/naming_behaviors")).status_code == 422
 
 
-async def test_what_touches_at_rest_is_told_of_a_draft_and_of_no_module(tmp_path: Path, serve: Serve) -> None:
+async def test_what_touches_at_rest_is_reported_of_a_draft_and_of_no_module(tmp_path: Path, serve: Serve) -> None:
     cell = load_cell(write_cell(tmp_path))
     sunk = CELL.replace("at: {xyz: [0, 0, 0.005], frame: slot}", "at: {xyz: [0, 0, 0], frame: slot}")
     async with serve(FakeBackend(documents=DocumentRepository(tmp_path, {}, cell=cell))) as served:

@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_layers_are_told_and_the_points_written(folder: Path) -> None:
+def test_the_layers_are_reported_and_the_points_written(folder: Path) -> None:
     options = ("--step", "0.5", "--direction", "down")
     said = flexcell("cell", "reach", "cell.yaml", "left", *options, "-o", "r.json", cwd=folder)
     assert said.code == 0, said.err

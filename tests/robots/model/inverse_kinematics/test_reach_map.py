@@ -35,7 +35,7 @@ def reached(kinematics: ArmKinematics, xyz: tuple[float, float, float]) -> bool:
 
 
 @pytest.mark.parametrize("name", ["ur10", "panda"])
-def test_what_is_told_is_reached_and_little_is_missed(name: str) -> None:
+def test_what_is_reported_is_reached_and_little_is_missed(name: str) -> None:
     """Against the solver, which searches for long where nothing is near."""
     kinematics = arm(name)
     *_, last = reach_levels(kinematics, step_m=STEP_M, direction="down")

@@ -57,7 +57,7 @@ def test_in_shipped_cells_nothing_touches(name: str) -> None:
         ("dock: {at: {xyz: [0, 1.0, 0]}}", "dock: {at: {xyz: [0.8, 0, -0.405]}}", {"table", "rack/board"}, -0.015),
     ],
 )
-def test_a_body_inside_of_another_is_told_with_its_depth(
+def test_a_body_inside_of_another_is_reported_with_its_depth(
     tmp_path: Path, replacing: str, by: str, pair: set[str], distance_m: float
 ) -> None:
     found = {
@@ -67,7 +67,7 @@ def test_a_body_inside_of_another_is_told_with_its_depth(
     assert found[frozenset(pair)] == pytest.approx(distance_m, abs=1e-4)
 
 
-def test_an_arm_that_is_nearer_than_the_margin_is_told_with_its_link(tmp_path: Path) -> None:
+def test_an_arm_that_is_nearer_than_the_margin_is_reported_with_its_link(tmp_path: Path) -> None:
     """The distance is that of the shapes, the margin of who asks."""
     cell = cell_of(tmp_path, replacing="at: {xyz: [0.8, 0, 0.05]}}\n  leg", by="at: {xyz: [0.5, 0, 0.5]}}\n  leg")
     touching = [each for each in rest_contacts(cell) if "table" in (each.first, each.second) and each.distance_m <= 0]
