@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from engine.cell import CameraCoverage, MeshDefect, RobotModels, RobotSummary, ToolKind, UrdfModule
+from engine.cell import (
+    CameraCoverage,
+    MeshDefect,
+    ReachDirection,
+    ReachLevel,
+    RestContact,
+    RobotModels,
+    RobotSummary,
+    ToolKind,
+    UrdfModule,
+)
 from engine.document import Cell
+from engine.errors import CellError
 from engine.skills.arm_target import StaticCell
+from engine.wording import did_you_mean
 from robots.tool_kinds import kind_of_mechanism, tool_kinds
 
 
@@ -85,6 +97,27 @@ class InstalledModels:
         from robots.model.urdf.urdf_fixtures import module_of_urdf
 
         return module_of_urdf(file, name=name)
+
+    def reach(self, cell: Cell, robot: str, *, step_m: float, direction: ReachDirection) -> Iterator[ReachLevel]:
+        """Yield where the tool of an arm gets; raises CellError or DocumentError for an unknown or invalid one."""
+        from robots.model.inverse_kinematics.reach_map import reach_levels
+        from robots.model.mechanics.kinematics import ArmKinematics
+        from robots.model.registry import model_of_entry
+        from robots.model.transform import RigidTransform
+
+        entry = cell.document.robots.get(robot)
+        if entry is None:
+            hint = did_you_mean(robot, cell.document.robots)
+            raise CellError(f"the cell has no robot `{robot}`", where=str(cell.file), hint=hint)
+        base = RigidTransform.from_pose(entry.base.pose())
+        kinematics = ArmKinematics(model_of_entry(entry, cell.resolve), base=base)
+        return reach_levels(kinematics, step_m=step_m, direction=direction)
+
+    def rest_contacts(self, cell: Cell) -> tuple[RestContact, ...]:
+        """Return the bodies that touch at rest; raises CellError or DocumentError for an invalid cell."""
+        from robots.planning.scene.rest_contacts import rest_contacts
+
+        return rest_contacts(cell)
 
     def write_scene(self, cell: Cell, file: Path) -> tuple[Path, ...]:
         """Write the scene of a cell for other programs; raises CellError or DocumentError as its writer does."""

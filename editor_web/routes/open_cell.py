@@ -13,7 +13,14 @@ from starlette.concurrency import run_in_threadpool
 
 from editor_web.http_bodies.cell_document_bodies import CellDocumentBody, CellEditsBody
 from editor_web.http_bodies.common_bodies import ConnectBody, ErrorBody, SimulationBody
-from editor_web.http_bodies.document_bodies import ConflictBody, SaveBody, SaveResultBody, TextBody
+from editor_web.http_bodies.document_bodies import (
+    ConflictBody,
+    SaveBody,
+    SaveResultBody,
+    TargetFindingsBody,
+    TargetsBody,
+    TextBody,
+)
 from editor_web.routes.services import ServicesOf
 from editor_web.routes.wire_router import WireRouter
 from engine.cell import (
@@ -117,6 +124,21 @@ def list_cell_documents(services: ServicesOf) -> tuple[CellDocumentName, ...]:
 def read_cell_draft(document_id: str, body: TextBody, services: ServicesOf) -> CellDraft:
     """Read and check a text as the document's; one that cannot be read has findings and no items."""
     return services.documents.cells.examine(document_id, body.text)
+
+
+@documents.post("/{document_id:path}/rest")
+async def find_contacts_at_rest(document_id: str, body: TargetsBody, services: ServicesOf) -> TargetFindingsBody:
+    """Check what touches in the cell of a text with all arms at home; the first check takes seconds, blocking nothing.
+
+    A module alone has none.
+    """
+    file = services.documents.cells.cell_file(document_id)
+    if file is None:
+        return TargetFindingsBody()
+    checked = await services.targets.findings(f"{body.page} {document_id}", file, body.text, of="cell")
+    if checked is None:
+        return TargetFindingsBody(dropped=True)
+    return TargetFindingsBody(findings=checked.findings, problem=checked.problem)
 
 
 @documents.post("/{document_id:path}/edits")

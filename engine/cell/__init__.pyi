@@ -6,6 +6,8 @@ from engine.cell.cell_items import CellItem, CellItems, items_of_cell, named_ite
 from engine.cell.device_details import DeviceDetails, devices_of_cell
 from engine.cell.mesh_defect import MeshDefect
 from engine.cell.open_cell import OpenCell
+from engine.cell.reach_map import ReachDirection, ReachLevel, ReachPoint
+from engine.cell.rest_contacts import RestContact
 from engine.cell.robot_models import ModelNames, RobotModels, RobotSummary, model_names, tool_kinds
 from engine.cell.scene_file import SceneFile, SceneFiles, SceneFormat
 from engine.cell.tool_kind import ToolKind
@@ -20,7 +22,11 @@ __all__ = [
     "MeshDefect",
     "ModelNames",
     "OpenCell",
+    "ReachDirection",
+    "ReachLevel",
+    "ReachPoint",
     "RegionCoverage",
+    "RestContact",
     "RobotModels",
     "RobotSummary",
     "SceneFile",

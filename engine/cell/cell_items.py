@@ -27,6 +27,7 @@ ItemKind = Literal[
     "equipment",
     "device",
     "module",
+    "bond",
     "fixture",
     "part",
     "frame",
@@ -91,7 +92,7 @@ def items_of_cell(cell: Cell | None, *, name: str, topics: Iterable[str] = ()) -
         return CellItems(cell=name, description="", file="", changed=False, items=())
     text = _read(cell.file)
     modules = {name: _read(module.file) for name, module in cell.modules.items()}
-    pins = [_read(equipment.file) for equipment in cell.pins.values()]
+    pins = tuple(_read(each.file) for each in cell.pins.values())
     meshes = mesh_digests(cell.meshes, cell.file.parent)
     items = tuple(_with_lines(item, cell, text, modules) for item in named_items(cell, topics=topics))
     return CellItems(
@@ -174,6 +175,8 @@ def _items(cell: Cell) -> Iterator[CellItem]:
         yield CellItem(path=f"devices/{name}", kind="device", name=name, model=model, owner=owner(name))
     for name, part in document.parts.items():
         yield CellItem(path=f"parts/{name}", kind="part", name=name, model=part.shape, owner=owner(name))
+    for name, bond in document.bonds.items():
+        yield CellItem(path=f"bonds/{name}", kind="bond", name=name, model=bond.kind, owner=owner(name))
     for name, frame in document.frames.items():
         section = "connectors" if name in document.connectors else "frames"
         if name not in document.modules:
@@ -216,6 +219,8 @@ def _topics(item: CellItem, known: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(each for each in known if each.startswith(f"{item.name}/"))
         case "part":
             return tuple(each for each in known if each == "cell/parts")
+        case "bond":
+            return tuple(each for each in known if each == "cell/bonds")
         case "occupancy":
             return tuple(each for each in known if each.startswith("cell/occupancy"))
         case "world":

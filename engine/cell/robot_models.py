@@ -6,7 +6,7 @@ connected or simulated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Protocol
@@ -15,6 +15,8 @@ import msgspec
 
 from engine.cell.camera_coverage import CameraCoverage
 from engine.cell.mesh_defect import MeshDefect
+from engine.cell.reach_map import ReachDirection, ReachLevel
+from engine.cell.rest_contacts import RestContact
 from engine.cell.tool_kind import ToolKind
 from engine.cell.urdf_module import UrdfModule
 from engine.document.cell import Cell
@@ -94,6 +96,24 @@ class RobotModels(Protocol):
 
         Raises:
             CellError: it cannot be read, has a joint that moves, or a mesh is missing.
+        """
+        ...
+
+    def reach(self, cell: Cell, robot: str, *, step_m: float, direction: ReachDirection) -> Iterator[ReachLevel]:
+        """Yield where the tool centre point of an arm of the cell gets, coarse first, whatever else stands there.
+
+        Raises:
+            CellError: the cell has no such robot, or as `summary`.
+            DocumentError: as `summary`.
+        """
+        ...
+
+    def rest_contacts(self, cell: Cell) -> tuple[RestContact, ...]:
+        """Return the bodies that touch with all arms at home, and arms that are nearly in contact.
+
+        Raises:
+            CellError: the scene of the cell cannot be built.
+            DocumentError: as `summary`.
         """
         ...
 

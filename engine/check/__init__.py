@@ -8,6 +8,7 @@ from engine.check.cell.cell_context import CellContext, cell_context
 from engine.check.cell.entry_checks import check_stored, names_by_kind
 from engine.check.cell.mesh_checks import check_module
 from engine.check.cell.parameter_names import parameter_naming
+from engine.check.cell.rest_check import check_rest, check_rest_of_items
 from engine.check.cell_fit import CellFit, cell_fit
 from engine.check.finding import CODES, Finding, Severity, finding_sort_key, invalid_document_finding, require_no_errors
 from engine.check.finding_pages import page_name, page_text
@@ -28,6 +29,8 @@ __all__ = [
     "check_file",
     "check_given",
     "check_module",
+    "check_rest",
+    "check_rest_of_items",
     "check_stored",
     "check_survey",
     "check_targets",

@@ -45,6 +45,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "unreachable-joints": ("error", "joint angles do not match the number of joints or the joint limits of the arm"),
     "unreachable-target": ("warning", "an arm of the cell cannot reach a target"),
     "target-in-collision": ("warning", "an arm at a target collides with itself or with a fixture of the cell"),
+    "collision-at-rest": ("warning", "bodies of a cell touch, or an arm nearly does, before anything has moved"),
     "missing-unit": ("warning", "a parameter without a unit is passed to one that has a unit"),
     "unit-mismatch": ("warning", "a parameter is passed to one that has another unit"),
     "suspect-unit": ("warning", "a number is so large that its unit is probably wrong"),

@@ -13,6 +13,7 @@ from editor_web.cell_view.rendering.geometry import Rgb
 from engine.messages import Quaternion, Vector3
 
 _COLOUR: Rgb = (37, 99, 235)
+_WARNING: Rgb = (220, 38, 38)
 _OPACITY = 0.25
 _POINT_M = 0.008
 _AXES_M = 0.1
@@ -26,12 +27,13 @@ _Length = Annotated[float, msgspec.Meta(gt=0.0, le=1000.0)]
 class MarkedBody(msgspec.Struct, frozen=True, kw_only=True):
     """A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter.
 
-    `pose` is that of its centre in the world.
+    `pose` is that of its centre in the world. With `warns` it is red.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
     size_m: Annotated[tuple[_Length, ...], msgspec.Meta(min_length=1, max_length=3)]
     pose: tuple[Vector3, Quaternion]
+    warns: bool = False
 
 
 class Marks(msgspec.Struct, frozen=True, kw_only=True):
@@ -107,16 +109,17 @@ class MarkLayer:
 
     def _solid(self, body: MarkedBody) -> viser.SceneNodeHandle:
         scene, name = self._server.scene, f"{TAUGHT}/marks/body"
+        colour = _WARNING if body.warns else _COLOUR
         first_m, last_m = body.size_m[0], body.size_m[-1]
         xyz, (x, y, z, w) = body.pose
         wxyz = (w, x, y, z)
         match body.shape:
             case "sphere":
-                return scene.add_icosphere(name, radius=first_m / 2.0, color=_COLOUR, opacity=_OPACITY, position=xyz)
+                return scene.add_icosphere(name, radius=first_m / 2.0, color=colour, opacity=_OPACITY, position=xyz)
             case "cylinder":
                 return scene.add_cylinder(
-                    name, first_m / 2.0, last_m, color=_COLOUR, opacity=_OPACITY, position=xyz, wxyz=wxyz
+                    name, first_m / 2.0, last_m, color=colour, opacity=_OPACITY, position=xyz, wxyz=wxyz
                 )
             case "box":
                 edges = (first_m, body.size_m[len(body.size_m) // 2], last_m)
-                return scene.add_box(name, dimensions=edges, color=_COLOUR, opacity=_OPACITY, position=xyz, wxyz=wxyz)
+                return scene.add_box(name, dimensions=edges, color=colour, opacity=_OPACITY, position=xyz, wxyz=wxyz)

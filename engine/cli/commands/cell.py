@@ -13,9 +13,11 @@ import typer
 
 from engine.cell.camera_coverage import RegionCoverage
 from engine.cell.cell_connection import CellConnection
+from engine.cell.reach_map import ReachDirection, ReachLevel
 from engine.cell.remote_cell import connect_remote_cell, remote_cell_connection
 from engine.cell.robot_models import RobotModels, robot_models
 from engine.cli.exit_code import ExitCode
+from engine.cli.output.reach import reach_json, reach_ply, reach_table
 from engine.document.cell import load_cell
 from engine.errors import CellError, FlexcellError
 from engine.host.state_folder_names import STATE_FOLDER
@@ -33,7 +35,7 @@ fixtures:
 
 app = typer.Typer(
     help="Show or restore the connection to the devices of a running server's cell; show what the cameras of a cell"
-    " see; import meshes into it and export its scene; begin a new one.",
+    " see and where its arms get; import meshes into it and export its scene; begin a new one.",
     no_args_is_help=True,
 )
 
@@ -144,6 +146,41 @@ def export(
     """
     for written in _models().write_scene(load_cell(file), output):
         sys.stdout.write(f"{written}\n")
+
+
+@app.command("reach")
+def reach(
+    file: Annotated[Path, typer.Argument(help="Cell document.", show_default=False)],
+    robot: Annotated[str, typer.Argument(help="Name of the arm in the cell.", show_default=False)],
+    step: Annotated[float, typer.Option(min=0.02, max=0.5, help="Distance of the points, in metres.")] = 0.1,
+    direction: Annotated[
+        ReachDirection, typer.Option(help="Directions of the tool's z axis: twelve on a sphere, or downwards only.")
+    ] = "any",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Write the points: .ply (coloured by share) or .json.", show_default=False),
+    ] = None,
+) -> None:
+    """Print where the tool centre point of an arm gets, in layers by height; whatever else stands in the cell.
+
+    `flexcell cell reach behaviors/cells/ur10.yaml arm --direction down -o reach.ply`
+    """
+    if output is not None and output.suffix not in (".ply", ".json"):
+        raise FlexcellError(f"{output} has an unknown ending", hint="end it in .ply or .json")
+    level: ReachLevel | None = None
+    for level in _models().reach(load_cell(file), robot, step_m=step, direction=direction):
+        sys.stderr.write(f"{level.searched} points looked at, {level.left} to go: {len(level.points)} reached\n")
+    if level is None:
+        return
+    sys.stdout.writelines(f"{line}\n" for line in reach_table(level))
+    if output is not None:
+        try:
+            output.write_text(reach_ply(level) if output.suffix == ".ply" else reach_json(level), encoding="utf-8")
+        except OSError as error:
+            raise FlexcellError(
+                f"{output} cannot be written: {error.strerror}", hint="choose another folder"
+            ) from error
+        sys.stdout.write(f"{output}\n")
 
 
 def _models() -> RobotModels:

@@ -19,6 +19,7 @@ from engine.check import (
     check_cell,
     check_entries_document,
     check_module,
+    check_rest,
     check_survey,
     check_targets,
     finding_sort_key,
@@ -84,7 +85,7 @@ def check(
         TargetLevel,
         typer.Option(
             help="Severity of targets that an arm of the cell cannot reach, or at which it would collide with itself"
-            " or a fixture; `off` skips the check."
+            " or a fixture; `off` skips the check, and that of the bodies of a cell at rest."
         ),
     ] = "warning",
     explain: Annotated[
@@ -163,7 +164,7 @@ def findings_of(
             case "behavior":
                 return _of_behavior(file, catalogue, store, cell, targets)
             case "cell":
-                return check_cell(load_cell(file))
+                return _of_cell(load_cell(file), targets)
             case "entries":
                 return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
             case "module":
@@ -176,6 +177,11 @@ def findings_of(
                 return ()
     except DocumentError as error:
         return tuple(invalid_document_finding(each, file) for each in (error, *error.others))
+
+
+def _of_cell(cell: Cell, targets: TargetLevel) -> tuple[Finding, ...]:
+    at_rest = check_rest(cell) if targets != "off" else ()
+    return tuple(sorted((*check_cell(cell), *at_rest), key=finding_sort_key))
 
 
 def _of_behavior(

@@ -151,6 +151,11 @@ class CellDocuments:
     def _kind_of(self, file: Path) -> CellDocumentKind:
         return "cell" if file == self._cell_file else "module"
 
+    def cell_file(self, document_id: str) -> Path | None:
+        """Return the file of the cell; None for a document of a module. Raises NoSuchDocument as `open` does."""
+        file = self._file_of(document_id)
+        return file if self._kind_of(file) == "cell" else None
+
     def _file_of(self, document_id: str) -> Path:
         if any(part.startswith(".") or part in _SKIPPED for part in document_id.split("/")):
             raise _no_document(document_id)

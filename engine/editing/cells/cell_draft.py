@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal, cast, get_args
 
 import msgspec
 
 from engine.cell.cell_items import TextExcerpts
 from engine.check.cell.mesh_checks import missing_meshes
-from engine.document.cell import cell_of_source
+from engine.document.cell import CellDocument, cell_of_source
 from engine.document.cell_frames import poses_in_world
-from engine.document.module_document import module_of_source
+from engine.document.module_document import ModuleDocument, module_of_source
 from engine.document.text.yaml_source import DocumentSource, parse_source
 from engine.editing.analysis.diagnostics import text_hash
 from engine.editing.cells.cell_edit import CellSection
@@ -21,8 +22,8 @@ from engine.messages import Pose
 
 CellDocumentKind = Literal["cell", "module"]
 SECTIONS: dict[CellDocumentKind, tuple[CellSection, ...]] = {
-    "cell": ("robots", "fixtures", "parts", "cameras", "frames", "connectors", "modules"),
-    "module": ("fixtures", "parts", "cameras", "frames"),
+    "cell": get_args(CellSection),
+    "module": ("fixtures", "parts", "cameras", "frames", "devices", "bonds"),
 }
 
 
@@ -39,8 +40,9 @@ class DraftItem(msgspec.Struct, frozen=True, kw_only=True):
 class CellDraft(msgspec.Struct, frozen=True, kw_only=True):
     """What a text says; one that cannot be read has findings and no items.
 
-    `frames` are the poses in the world, or in the frame of the module, of all that something may stand in; none while
-    the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item.
+    `frames` are the poses in the world, or in the frame of the module, of all that something may stand in, `parts`
+    those of parts, `positions` those of devices, by names in the cell; none while the text has errors. The path of a
+    finding is `fixtures/floor`, empty for one that is in no item.
     """
 
     text: str
@@ -49,18 +51,29 @@ class CellDraft(msgspec.Struct, frozen=True, kw_only=True):
     items: tuple[DraftItem, ...] = ()
     findings: tuple[FindingView, ...] = ()
     frames: dict[str, Pose] = {}
+    parts: dict[str, Pose] = {}
+    positions: dict[str, tuple[str, ...]] = {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Meaning:
+    """What a text without errors says beside its items."""
+
+    frames: dict[str, Pose] = field(default_factory=dict[str, Pose])
+    parts: dict[str, Pose] = field(default_factory=dict[str, Pose])
+    positions: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
 
 def read_cell_draft(text: str, *, file: Path, kind: CellDocumentKind) -> CellDraft:
     """Read and check a text as if it were in this file; modules that it names are read from disk."""
     items: tuple[DraftItem, ...] = ()
-    frames: dict[str, Pose] = {}
+    meaning = _Meaning()
     findings: tuple[FindingView, ...] = ()
     try:
         source = parse_source(text, file=str(file))
         items = _items(source, text, kind)
         document = (cell_of_source if kind == "cell" else module_of_source)(source, file=file).document
-        frames = poses_in_world(document.frames, document.fixtures)
+        meaning = _meaning(document)
         missing = missing_meshes(document.fixtures, source, file.parent)
         findings = tuple(
             _view(each.message, each.position, file, items, code=each.code, hint=each.hint) for each in missing
@@ -70,7 +83,25 @@ def read_cell_draft(text: str, *, file: Path, kind: CellDocumentKind) -> CellDra
     except OSError as error:
         message = f"a module cannot be read: {error.strerror}"
         findings = (_finding(DocumentError(message, where=str(error.filename)), file, items),)
-    return CellDraft(text=text, hash=text_hash(text), kind=kind, items=items, findings=findings, frames=frames)
+    return CellDraft(
+        text=text,
+        hash=text_hash(text),
+        kind=kind,
+        items=items,
+        findings=findings,
+        frames=meaning.frames,
+        parts=meaning.parts,
+        positions=meaning.positions,
+    )
+
+
+def _meaning(document: CellDocument | ModuleDocument) -> _Meaning:
+    poses = poses_in_world(document.frames, document.fixtures)
+    return _Meaning(
+        frames=poses,
+        parts={name: part.at.in_world(poses).pose() for name, part in document.parts.items()},
+        positions={name: tuple(device.positions) for name, device in document.devices.items()},
+    )
 
 
 def _items(source: DocumentSource, text: str, kind: CellDocumentKind) -> tuple[DraftItem, ...]:

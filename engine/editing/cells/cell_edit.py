@@ -9,7 +9,18 @@ from msgspec import Meta
 
 from engine.document.placement import Name
 
-CellSection = Literal["robots", "fixtures", "parts", "cameras", "frames", "connectors", "modules"]
+CellSection = Literal[
+    "robots",
+    "equipment",
+    "fixtures",
+    "parts",
+    "cameras",
+    "frames",
+    "connectors",
+    "modules",
+    "devices",
+    "bonds",
+]
 WrittenName = Annotated[str, Meta(min_length=1, max_length=200, description="A name as it is in the document")]
 FieldStep = Annotated[str, Meta(min_length=1, max_length=64)]
 FieldPath = Annotated[
@@ -54,4 +65,12 @@ class SetCellField(CellEdit, frozen=True, kw_only=True, tag="set_field"):
     value: object
 
 
-AnyCellEdit = AddCellItem | RemoveCellItem | RenameCellItem | SetCellField
+class RenameCellField(CellEdit, frozen=True, kw_only=True, tag="rename_field"):
+    """Rename an axis, belt, sensor or position of a device, with all that names it in the document."""
+
+    name: WrittenName
+    field: Annotated[tuple[FieldStep, FieldStep], Meta(description="Such as `sensors`, `shut`")]
+    new_name: Name
+
+
+AnyCellEdit = AddCellItem | RemoveCellItem | RenameCellItem | SetCellField | RenameCellField

@@ -14,10 +14,18 @@ from engine.editing.cells.cell_edit import (
     AnyCellEdit,
     CellSection,
     RemoveCellItem,
+    RenameCellField,
     RenameCellItem,
     SetCellField,
 )
-from engine.editing.cells.cell_names_in_use import NAMED_SECTIONS, Fields, fields_in, rename_key, uses_of
+from engine.editing.cells.cell_names_in_use import (
+    Fields,
+    fields_in,
+    rename_key,
+    sections_beside,
+    uses_in_devices,
+    uses_of,
+)
 from engine.editing.edits.apply import EditRefusal
 from engine.editing.text.draft import Draft, EditRefused
 from engine.errors import DocumentError
@@ -26,11 +34,11 @@ from engine.wording import did_you_mean
 _RESERVED = (WORLD, "occupancy")
 # The order in which documents have their sections; a new one is written after those before it.
 _ORDER = (
-    *("flexcell", "cell", "module", "description", "store", "world", "robots", "connectors", "modules", "fixtures"),
-    *("parts", "frames", "cameras"),
+    *("flexcell", "cell", "module", "description", "store", "world", "robots", "equipment", "connectors", "modules"),
+    *("fixtures", "parts", "frames", "cameras", "devices", "bonds"),
 )
 # What is nothing when it is empty; `detect: {}` says something.
-_NOTHING_WHEN_EMPTY = frozenset(("at", "jitter", "base", "gripper"))
+_NOTHING_WHEN_EMPTY = frozenset(("at", "jitter", "base", "gripper", "axes", "belts", "sensors"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +70,7 @@ def apply_cell_edits(text: str, edits: Sequence[AnyCellEdit], *, file: str) -> t
 def _apply(data: Fields, edit: AnyCellEdit) -> None:
     match edit:
         case AddCellItem():
-            _require_free(data, edit.name)
+            _require_free(data, edit.section, edit.name)
             _section(data, edit.section)[edit.name] = copy.deepcopy(edit.value)
         case RemoveCellItem():
             items = _items_with(data, edit.section, edit.name)
@@ -76,16 +84,27 @@ def _apply(data: Fields, edit: AnyCellEdit) -> None:
             items = _items_with(data, edit.section, edit.name)
             if edit.name == edit.new_name:
                 return
-            _require_free(data, edit.new_name)
+            _require_free(data, edit.section, edit.new_name)
             for use in list(uses_of(data, edit.section, edit.name)):
-                written = use.key if use.is_key else str(use.holder[use.key])
-                use.rename(edit.new_name + written[len(edit.name) :])
+                use.rename(edit.new_name + use.written[len(edit.name) :])
             rename_key(items, edit.name, edit.new_name)
         case SetCellField():
             item = _items_with(data, edit.section, edit.name)[edit.name]
             if not isinstance(item, dict):
                 raise EditRefused(f"`{edit.name}` has no fields", hint="edit the text")
             _set_field(cast("Fields", item), edit.field, edit.value)
+        case RenameCellField(field=(group, key)):
+            item = _items_with(data, edit.section, edit.name)[edit.name]
+            entries = fields_in(item, group)
+            if edit.section != "devices" or key not in entries:
+                raise EditRefused(f"`{edit.name}` has no `{key}` in `{group}`", hint="select the item again")
+            if key == edit.new_name:
+                return
+            if edit.new_name in entries:
+                raise EditRefused(f"`{edit.new_name}` is already in `{group}`", hint="choose another name")
+            for use in list(uses_in_devices(data, edit.name, group, key)):
+                use.rename(edit.new_name)
+            rename_key(entries, key, edit.new_name)
 
 
 def _set_field(item: Fields, field: Sequence[str], value: object) -> None:
@@ -130,10 +149,10 @@ def _merged(old: object, new: object) -> object:
             return copy.deepcopy(new)
 
 
-def _require_free(data: Fields, name: str) -> None:
-    for section in NAMED_SECTIONS:
-        if name in fields_in(data, section):
-            raise EditRefused(f"`{name}` is already a name in `{section}`", hint="choose another name")
+def _require_free(data: Fields, section: CellSection, name: str) -> None:
+    for other in sections_beside(section):
+        if name in fields_in(data, other):
+            raise EditRefused(f"`{name}` is already a name in `{other}`", hint="choose another name")
     if name in _RESERVED:
         raise EditRefused(f"`{name}` has a meaning of its own", hint="choose another name")
 

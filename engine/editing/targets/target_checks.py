@@ -7,6 +7,7 @@ import logging
 import socket
 import subprocess
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
@@ -49,21 +50,24 @@ class TargetChecks:
         """The process id; 0 while no process runs."""
         return self._process.pid if self._process is not None else 0
 
-    async def findings(self, asker: str, file: Path, text: str) -> TargetFindings | None:
-        """Return the targets in a text that an arm of its cell cannot take.
+    async def findings(
+        self, asker: str, file: Path, text: str, *, of: Literal["behavior", "cell"] = "behavior"
+    ) -> TargetFindings | None:
+        """Return the targets in a text that an arm of its cell cannot take; of a cell what touches at rest.
 
         None if the same client has requested a check of a newer text before this check started.
 
         Args:
             asker: The client: a page and its document.
             file: File that the text belongs to.
-            text: A behavior document.
+            text: A behavior document, or that of a cell.
+            of: Which of them it is.
         """
         self._numbers += 1
         number = self._latest[asker] = self._numbers
         try:
             async with self._turn:
-                return await self._asked(file, text) if self._latest[asker] == number else None
+                return await self._asked(file, text, of) if self._latest[asker] == number else None
         finally:
             if self._latest.get(asker) == number:
                 del self._latest[asker]
@@ -79,8 +83,8 @@ class TargetChecks:
             process.kill()
             process.wait()
 
-    async def _asked(self, file: Path, text: str) -> TargetFindings:
-        request = TargetRequest(project=str(self._project), file=str(file), text=text)
+    async def _asked(self, file: Path, text: str, of: Literal["behavior", "cell"]) -> TargetFindings:
+        request = TargetRequest(project=str(self._project), file=str(file), text=text, of=of)
         try:
             async with asyncio.timeout(self.limit_s):
                 return await self._answer(request)

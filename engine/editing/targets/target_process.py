@@ -9,8 +9,10 @@ from pathlib import Path
 
 import msgspec
 
-from engine.check import check_targets
+from engine.check import check_rest_of_items, check_targets
+from engine.document.cell import cell_of_source
 from engine.document.loader import survey_behavior
+from engine.document.text.yaml_source import parse_source
 from engine.editing.analysis.diagnostics import draw_document, finding_view, sorted_findings
 from engine.editing.project_context import ProjectContext
 from engine.editing.targets.target_messages import TargetFindings, TargetRequest
@@ -18,6 +20,7 @@ from engine.editing.text.draft import Draft
 from engine.editing.text.outline import Outline
 from engine.errors import DocumentError, FlexcellError
 from engine.host.child_process import set_parent_death_signal
+from engine.library.behavior_library import FindingView
 from engine.library.state_reloading import StateReloading
 from engine.registry import load_states
 from engine.runtime.plan import Catalogue
@@ -42,6 +45,8 @@ def main() -> None:
 def _answered(request: TargetRequest, catalogues: dict[str, _Loaded]) -> TargetFindings:
     project = Path(request.project)
     try:
+        if request.of == "cell":
+            return rest_findings(request.text, Path(request.file))
         if request.project not in catalogues:
             catalogue = load_states(project)
             catalogues[request.project] = (catalogue, StateReloading(project, catalogue))
@@ -50,6 +55,30 @@ def _answered(request: TargetRequest, catalogues: dict[str, _Loaded]) -> TargetF
         return target_findings(request.text, Path(request.file), project, catalogue)
     except FlexcellError as error:
         return TargetFindings(problem=str(error))
+
+
+def rest_findings(text: str, file: Path) -> TargetFindings:
+    """Return what touches at rest in the text of a cell, as the content of `file`, at both items of each pair.
+
+    A text with errors has none: the check reports these. The line of an item of a module is 0.
+    """
+    try:
+        cell = cell_of_source(parse_source(text, file=str(file)), file=file)
+    except (DocumentError, OSError):
+        return TargetFindings()
+    found = (
+        FindingView(
+            severity=each.severity,
+            code=each.code,
+            message=each.message,
+            path=each.path,
+            line=each.position.line if each.position.file == str(file) else 0,
+            column=each.position.column if each.position.file == str(file) else 0,
+            hint=each.hint,
+        )
+        for each in check_rest_of_items(cell)
+    )
+    return TargetFindings(findings=tuple(found))
 
 
 def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) -> TargetFindings:

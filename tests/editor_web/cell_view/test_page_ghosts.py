@@ -144,6 +144,16 @@ def test_a_marked_body_stands_where_it_will_be(
     assert server.scene.get_handle_by_name("/taught/marks/body") is None
 
 
+def test_a_marked_body_that_warns_has_another_colour(server: viser.ViserServer) -> None:
+    """One that touches something."""
+    layer, colours = MarkLayer(server), list[object]()
+    for warns in (False, True):
+        layer.draw(Marks(body=MarkedBody(shape="box", size_m=(0.1, 0.1, 0.1), pose=TURNED, warns=warns)))
+        colours.append(getattr(server.scene.get_handle_by_name("/taught/marks/body"), "color", None))
+    assert None not in colours
+    assert colours[0] != colours[1]
+
+
 async def test_only_the_page_that_asked_sees_marks() -> None:
     """They go when it asks for none."""
     async with opened() as view, viser_page(view, "mine") as mine, viser_page(view, "yours") as yours:

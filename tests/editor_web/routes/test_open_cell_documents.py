@@ -11,6 +11,7 @@ from editor_web.app import new_app
 from editor_web.security.authentication import load_access_tokens
 from engine.document.cell import load_cell
 from engine.editing import DocumentRepository
+from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.engine.editing.cells.cell_texts import CELL, write_cell
 
@@ -88,3 +89,15 @@ async def test_behaviors_that_name_an_item_are_listed(tmp_path: Path) -> None:
         answer = await http.get("/cell/naming_behaviors", params={"name": "plate"})
         assert (answer.status_code, answer.json()) == (200, [])
         assert (await http.get("/cell/naming_behaviors")).status_code == 422
+
+
+async def test_what_touches_at_rest_is_reported_of_a_draft_and_of_no_module(tmp_path: Path, serve: Serve) -> None:
+    cell = load_cell(write_cell(tmp_path))
+    sunk = CELL.replace("at: {xyz: [0, 0, 0.005], frame: slot}", "at: {xyz: [0, 0, 0], frame: slot}")
+    async with serve(FakeBackend(documents=DocumentRepository(tmp_path, {}, cell=cell))) as served:
+        at = f"api/v1{AT}/rest"
+        found = (await served.http.post(at, json={"text": sunk, "page": "mine"})).json()
+        assert (found["problem"], found["dropped"]) == ("", False)
+        assert {"fixtures/table", "parts/plate"} <= {each["path"] for each in found["findings"]}
+        module = at.replace("bench.yaml", "bin/module.yaml")
+        assert (await served.http.post(module, json={"text": "x", "page": "mine"})).json()["findings"] == []

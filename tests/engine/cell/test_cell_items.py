@@ -186,6 +186,16 @@ def test_what_stands_on_a_module_belongs_to_it_and_has_the_lines_of_its_document
     assert items_of_cell(cell, name="bench").changed
 
 
+def test_a_cell_with_equipment_is_unchanged_until_its_pins_are(tmp_path: Path) -> None:
+    pins = "flexcell: 1\nequipment: clamps\nbackend: {kind: simulated}\npins: {valve: {kind: digital_input, pin: 1}}\n"
+    (tmp_path / "clamps.yaml").write_text(pins, encoding="utf-8")
+    (tmp_path / "cell.yaml").write_text(CELL + "equipment: {valves: {pins: clamps.yaml}}\n", encoding="utf-8")
+    cell = load_cell(tmp_path / "cell.yaml")
+    assert not items_of_cell(cell, name="bench").changed
+    (tmp_path / "clamps.yaml").write_text(pins.replace("pin: 1", "pin: 2"), encoding="utf-8")
+    assert items_of_cell(cell, name="bench").changed
+
+
 def test_a_module_that_is_named_by_its_file_is_called_as_its_document_says(tmp_path: Path) -> None:
     (tmp_path / "racks").mkdir()
     (tmp_path / "racks" / "small.yaml").write_text(MODULE, encoding="utf-8")

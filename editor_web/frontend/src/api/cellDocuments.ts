@@ -12,6 +12,7 @@ import type {
   ModelNames,
   ReferringBehavior,
   SaveResultBody,
+  TargetFindingsBody,
 } from './types'
 
 function at(id: string, rest = ''): string {
@@ -24,6 +25,7 @@ export const cellDocuments = {
   open: (id: string) => call<CellDocumentBody>(at(id)),
   draft: (id: string, text: string) => post<CellDraft>(at(id, '/draft'), { text }),
   edit: (id: string, text: string, edits: readonly CellEdit[]) => post<CellEditAnswer>(at(id, '/edits'), { text, edits }),
+  rest: (id: string, text: string, page: string) => post<TargetFindingsBody>(at(id, '/rest'), { text, page }),
   save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
 }
 

@@ -41,7 +41,7 @@ export interface AdaptationRequest {
 /** Add an item at the end of a section, which is written if the document has none. */
 export interface AddCellItem {
   readonly edit: "add_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly value: Dict<unknown>
 }
@@ -426,7 +426,7 @@ export interface CellDocumentName {
   readonly folder: string
 }
 
-/** What a text says; one that cannot be read has findings and no items. `frames` are the poses in the world, or in the frame of the module, of all that something may stand in; none while the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item. */
+/** What a text says; one that cannot be read has findings and no items. `frames` are the poses in the world, or in the frame of the module, of all that something may stand in, `parts` those of parts, `positions` those of devices, by names in the cell; none while the text has errors. The path of a finding is `fixtures/floor`, empty for one that is in no item. */
 export interface CellDraft {
   readonly text: string
   readonly hash: string
@@ -434,6 +434,8 @@ export interface CellDraft {
   readonly items: readonly DraftItem[]
   readonly findings: readonly FindingView[]
   readonly frames: Dict<Pose>
+  readonly parts: Dict<Pose>
+  readonly positions: Dict<readonly string[]>
 }
 
 /** A text after edits, with what it says; the text as it was if an edit was refused. */
@@ -445,7 +447,7 @@ export interface CellEditAnswer {
 /** A text and the edits to apply, all or none. */
 export interface CellEditsBody {
   readonly text: string
-  readonly edits: readonly (AddCellItem | RemoveCellItem | RenameCellItem | SetCellField)[]
+  readonly edits: readonly (AddCellItem | RemoveCellItem | RenameCellItem | SetCellField | RenameCellField)[]
 }
 
 /** The cell that a behavior is written for, and why it cannot be executed in the connected one. */
@@ -457,7 +459,7 @@ export interface CellFit {
 /** One item of a cell. `model` says what it is, in the words of the document: `panda`, `box`, `mujoco`. `owner` is the address of the item that carries it, empty for one that stands by itself. `topics` are those of the bus that tell of it. `text` are its lines of the document, the first of which has the number `line`, from 1; `file` is the document of its module, empty for that of the cell. */
 export interface CellItem {
   readonly path: string
-  readonly kind: "camera" | "device" | "equipment" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
+  readonly kind: "bond" | "camera" | "device" | "equipment" | "fixture" | "frame" | "module" | "occupancy" | "part" | "person" | "robot" | "store" | "tool" | "world"
   readonly name: string
   readonly model: string
   readonly owner: string
@@ -840,7 +842,7 @@ export interface DraftBody {
 
 /** An item of a document as written, with its first and last line, from 1. */
 export interface DraftItem {
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly line: number
   readonly end_line: number
@@ -1552,11 +1554,12 @@ export interface MappedName {
   readonly paths: readonly string[]
 }
 
-/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `pose` is that of its centre in the world. */
+/** A body where it will be: `size_m` are edges x, y, z of a box, diameter and length of a cylinder, a diameter. `pose` is that of its centre in the world. With `warns` it is red. */
 export interface MarkedBody {
   readonly shape: "box" | "cylinder" | "sphere"
   readonly size_m: readonly number[]
   readonly pose: readonly [readonly [number, number, number], readonly [number, number, number, number]]
+  readonly warns?: boolean
 }
 
 /** The distribution of a measure over the runs that succeeded, and over those that did not. */
@@ -2243,7 +2246,7 @@ export interface ReleaseStopBody {
 /** Remove an item that nothing else in the document names. */
 export interface RemoveCellItem {
   readonly edit: "remove_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
 }
 
@@ -2253,10 +2256,19 @@ export interface RemoveNodes {
   readonly paths: readonly string[]
 }
 
+/** Rename an axis, belt, sensor or position of a device, with all that names it in the document. */
+export interface RenameCellField {
+  readonly edit: "rename_field"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly name: string
+  readonly field: readonly [string, string]
+  readonly new_name: string
+}
+
 /** Rename an item, with all that names it in the document. */
 export interface RenameCellItem {
   readonly edit: "rename_item"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly new_name: string
 }
@@ -2562,7 +2574,7 @@ export interface SetCanvasNote {
 /** Set a field of an item; null removes it, so that its default applies. Of a list and of a mapping only what differs is written: the other values keep their spelling. */
 export interface SetCellField {
   readonly edit: "set_field"
-  readonly section: "cameras" | "connectors" | "fixtures" | "frames" | "modules" | "parts" | "robots"
+  readonly section: "bonds" | "cameras" | "connectors" | "devices" | "equipment" | "fixtures" | "frames" | "modules" | "parts" | "robots"
   readonly name: string
   readonly field: readonly string[]
   readonly value: unknown

@@ -19,6 +19,8 @@ export interface PoseRequest extends Request {
   readonly frames: readonly string[]
   /** What a frame that belongs to the state stands for: `part` for the part that it names. */
   readonly meant: (frame: string) => string
+  /** A frame, whose z points up from the plane of its points; else what a tool is brought to. */
+  readonly isFrame?: boolean
 }
 
 export interface PlainRequest extends Request {

@@ -20,6 +20,7 @@ import { PageHead } from '../components/PageHead'
 import { Panel } from '../components/Panel'
 import { Splitter } from '../components/Splitter'
 import { itemAt, itemsOfDraft, surroundingsOf } from '../document/cellEditing'
+import { placeToMeasure } from '../document/cellMeasure'
 import { cellTree, deviceOf, nodeAt } from '../document/cellTree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { DriverSwitch } from '../features/cell/DriverSwitch'
@@ -33,6 +34,7 @@ import { draftOf, useCellEditor } from '../features/cellEditor/store'
 import { CellItemTree } from '../features/cellItems/CellItemTree'
 import { ModulePlugging } from '../features/modules/ModulePlugging'
 import { ItemDetails } from '../features/cellItems/ItemDetails'
+import { Measure } from '../features/cellItems/Measure'
 import { DevicePanel } from '../features/devices/DevicePanel'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { cellHref, TEACH_HREF } from './route'
@@ -63,6 +65,8 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const { value: documents = NO_DOCUMENTS } = useAnswer(cellDocumentsQuery(mayEdit))
   const phase = useCellEditor((s) => s.phase)
   const draft = useCellEditor((s) => (s.phase === 'ready' ? draftOf(s) : undefined))
+  const rest = useCellEditor((s) => s.rest)
+  const [measuredFrom, setMeasuredFrom] = useState('')
   const client = useQueryClient()
   const tree = useMemo(() => {
     const shown = frames && draft?.kind !== 'module' ? frames.split('\n') : []
@@ -80,9 +84,16 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
   const select = (address: string) => onOpen(cellHref(address))
   const edited = draft && itemAt(draft, item)
   const faulty = new Set(draft?.findings.map((each) => each.path))
+  const touching = new Set(rest.map((each) => each.path))
+  const measurable = (address: string) => {
+    const of = nodeAt(tree, address)
+    const pose = of && placeToMeasure(of, draft, state)
+    return of && pose && { address, name: of.name, pose }
+  }
   const items = (
     <Panel
       title="Items"
+      foot={<Measure from={measurable(measuredFrom)} to={measurable(item)} onFrom={setMeasuredFrom} />}
       tools={
         surroundings && (
           <AddMenu
@@ -93,7 +104,7 @@ export function CellPage({ item, session, isNarrow, onOpen }: CellPageProps) {
         )
       }
     >
-      <CellItemTree key={draft?.kind} tree={tree} now={now} selected={item} faulty={faulty} onSelect={select} />
+      <CellItemTree key={draft?.kind} tree={tree} now={now} selected={item} faulty={faulty} touching={touching} onSelect={select} />
     </Panel>
   )
   const driven = devices?.find((each) => `robots/${each.device}` === node?.item?.path)

@@ -46,7 +46,14 @@ export function RoutedPage(props: RoutedPageProps) {
     case 'teach':
       return <TeachPage session={session} isNarrow={isNarrow} />
     case 'cell':
-      return <CellPage item={route.item} session={session} isNarrow={isNarrow} onOpen={onOpen} />
+      return (
+        <>
+          <CellPage item={route.item} session={session} isNarrow={isNarrow} onOpen={onOpen} />
+          <WhileLoading value={null}>
+            <EditorWizard hasView={hasCellView(session)} isNarrow={isNarrow} />
+          </WhileLoading>
+        </>
+      )
     case 'past':
       return <PastRunsPage onOpen={onOpen} />
     case 'runs':

@@ -1,29 +1,14 @@
 /** Fields of items, their numbers in the units of the form, the edits of a change, and where an item will be in 3D. */
 import { expect, it } from 'vitest'
 import type { CellDraft, CellItem, DraftItem } from '../api/types'
-import {
-  editsBetween,
-  fieldsFor,
-  freeName,
-  itemAddress,
-  itemAt,
-  itemAtLine,
-  itemsOfDraft,
-  NEW_ITEMS,
-  nameFault,
-  newItemsOf,
-  shownItem,
-  shownNumbers,
-  surroundingsOf,
-  withShape,
-  withValue,
-  writtenNumbers,
-  type Field,
-  type Section,
-} from './cellEditing'
+import { editsBetween, fieldsFor, itemAddress, itemAt, itemAtLine, itemsOfDraft, nameFault, surroundingsOf, withShape } from './cellEditing'
+import { shownNumbers, withValue, writtenNumbers, type Field, type Section } from './cellFields'
+import { freeName, NEW_ITEMS, newItemsOf } from './cellNewItems'
+import { shownItem } from './cellShown'
 
 const MODELS = { folders: ['bin'], robots: ['panda', 'ur10'], tools: ['panda_hand'] }
-const AROUND = { frames: ['world', 'table'], connectors: ['dock'], ...MODELS }
+const NAMES = { fixtures: ['table'], parts: [], equipment: [], positions: {} }
+const AROUND = { frames: ['world', 'table'], connectors: ['dock'], ...MODELS, ...NAMES }
 const HALF_TURN = 1.5707963267948966
 
 function item(section: Section, name: string, value = {}, line = 1): DraftItem {
@@ -37,7 +22,7 @@ function draft(change: Partial<CellDraft> = {}): CellDraft {
     item('connectors', 'port', {}, 8),
     item('modules', 'bin', { module: 'bin', connector: 'port' }, 11),
   ]
-  return { text: '', hash: '', kind: 'cell', items, findings: [], frames: {}, ...change }
+  return { text: '', hash: '', kind: 'cell', items, findings: [], frames: {}, parts: {}, positions: {}, ...change }
 }
 
 function numbersField(section: Section, label: string): Field & { kind: 'numbers' } {
@@ -101,6 +86,8 @@ it('offers what something may stand in, and connectors that are free', () => {
     frames: ['world', 'bin/slot', 'table'],
     connectors: ['dock'],
     ...MODELS,
+    ...NAMES,
+    fixtures: ['table', 'bin/slot'],
   })
   expect(surroundingsOf(draft(), MODELS).frames).toEqual(['world', 'bin', 'dock', 'port', 'table'])
 })
@@ -114,7 +101,7 @@ it('gives a robot a model, a tool or none, and a base', () => {
     { edit: 'set_field', section: 'robots', name: 'arm', field: ['gripper', 'model'], value: null },
     { edit: 'set_field', section: 'robots', name: 'arm', field: ['base', 'xyz'], value: [1, 0, 0] },
   ])
-  expect(shownItem('robots', bare, { world: pose(2) })?.pose.xyz).toEqual([3, 0, 0])
+  expect(shownItem('robots', bare, draft({ frames: { world: pose(2) } }))?.pose.xyz).toEqual([3, 0, 0])
   const robot = NEW_ITEMS.find(({ section }) => section === 'robots')
   expect(robot?.value(AROUND)).toEqual({ model: 'panda', base: { xyz: [0, 0, 0] } })
   expect(robot?.obstacle({ ...AROUND, robots: [] })).toBe('no models of robots are installed')
@@ -183,7 +170,7 @@ function pose(x: number) {
 }
 
 it('tells where an item will be in the world, in what it stands in', () => {
-  const frames = { world: pose(0), table: pose(2) }
+  const frames = draft({ frames: { world: pose(0), table: pose(2) } })
   const box = { shape: 'box', size_m: [1, 1, 1], at: { xyz: [0.5, 0, 0], frame: 'table' } }
   expect(shownItem('fixtures', box, frames)).toMatchObject({ pose: { xyz: [2.5, 0, 0] }, shape: 'box', size: [1, 1, 1] })
   expect(shownItem('frames', { parent: 'table', at: { rpy: [0, 0, HALF_TURN] } }, frames)?.pose.xyzw[3]).toBeCloseTo(Math.SQRT1_2)

@@ -1,7 +1,7 @@
 /** Dragging in 3D: numbers in the frame that an item stands in, at whole steps, or on a connector. */
 import { expect, it } from 'vitest'
 import type { DraftItem } from '../api/types'
-import { canDrag, canTurn, draggedTo } from './cellPlacing'
+import { canDrag, canTurn, draggedTo, taughtAt, taughtPose } from './cellPlacing'
 import { turnOf } from './poses'
 
 const STRAIGHT = [0, 0, 0, 1] as const
@@ -41,4 +41,12 @@ it('moves a camera and turns it not, and leaves what stands in something unknown
   const lost = { at: { frame: 'nowhere' } }
   expect(draggedTo(item('parts', lost), at, draft, 'fine')).toBe(lost)
   expect([canTurn('cameras'), canDrag('cameras'), canDrag('modules')]).toEqual([false, true, false])
+})
+
+it('takes a pose that an arm has taught, in what the item stands in', () => {
+  const slot = item('frames', { parent: 'table' })
+  const taught = taughtPose({ xyz: [1, 0.52345678, 0], xyzw: turnOf([0, 0, QUARTER + 0.3]) })
+  expect(taught && taughtAt(slot, taught, draft)).toEqual({ parent: 'table', at: { xyz: [0.523457, 0, 0], rpy: [0, 0, 0.3] } })
+  expect(taught && taughtAt(item('frames', { parent: 'nowhere' }), taught, draft)).toEqual({ parent: 'nowhere' })
+  expect(taughtPose({ xyz: [1, 2] })).toBeUndefined()
 })

@@ -1,8 +1,9 @@
 /** An item that is dragged in the 3D view: the numbers of its form, snapped to steps and to connectors. Pure. */
 import type { CellDraft, DraftItem } from '../api/types'
-import { frameOf, placeKey, valueAt, withValue, type Section } from './cellEditing'
-import { lookup, type Dict } from './dict'
-import { distance, roundedTo, seenFrom, type PlacedPose, type Vector } from './poses'
+import { valueAt, withValue, type Section } from './cellFields'
+import { frameOf, placeKey } from './cellShown'
+import { fieldsOf, lookup, type Dict } from './dict'
+import { distance, poseFrom, roundedTo, seenFrom, vectorFrom, type PlacedPose, type Vector } from './poses'
 import { rollPitchYaw } from './teaching'
 
 export type DragSteps = 'off' | 'fine' | 'usual' | 'coarse'
@@ -18,9 +19,11 @@ export const DRAG_STEPS: Readonly<Record<Exclude<DragSteps, 'off'>, { readonly l
 /** So near to a connector an item is put onto it. */
 export const CONNECTOR_M = 0.03
 
-/** Can it be dragged? A module stands where its connector is. */
+const FIXED: ReadonlySet<Section> = new Set(['modules', 'equipment', 'devices', 'bonds'])
+
+/** Can it be dragged? A module stands where its connector is, a device and a bond where their bodies are. */
 export function canDrag(section: Section): boolean {
-  return section !== 'modules'
+  return !FIXED.has(section)
 }
 
 /** Can it be turned? A camera looks at a point. */
@@ -51,6 +54,26 @@ export function draggedTo(
   const path = [placeKey(section), 'rpy']
   const isWritten = valueAt(value, path) !== undefined
   return isWritten || turn.some((each) => each !== 0) ? withValue(moved, path, turn) : moved
+}
+
+/** The pose that a wizard has made; undefined where it is none. */
+export function taughtPose(made: unknown): PlacedPose | undefined {
+  const xyz = vectorFrom(lookup(fieldsOf(made), 'xyz'))
+  const turn = lookup(fieldsOf(made), 'xyzw')
+  return xyz && Array.isArray(turn) ? poseFrom([...xyz, ...(turn as number[])]) : undefined
+}
+
+/** The value of an item whose origin is taught at a pose of the world; the same value where nobody knows what it stands in. */
+export function taughtAt(
+  { section, value }: Pick<DraftItem, 'section' | 'value'>,
+  pose: PlacedPose,
+  { frames }: Pick<CellDraft, 'frames'>,
+): Dict<unknown> {
+  const base = lookup(frames, frameOf(section, value))
+  if (!base) return value
+  const seen = seenFrom(pose, base)
+  const moved = withValue(value, [placeKey(section), 'xyz'], roundedTo(seen.xyz, 6))
+  return withValue(moved, [placeKey(section), 'rpy'], roundedTo(rollPitchYaw(seen.xyzw), 6))
 }
 
 function stepTo(value: number, step: number): number {

@@ -32,6 +32,7 @@ const GROUP_OF: Readonly<Record<Exclude<CellItem['kind'], 'tool' | 'frame'>, str
   equipment: 'Equipment',
   module: 'Modules',
   device: 'Devices',
+  bond: 'Bonds',
   fixture: 'Fixtures',
   part: 'Parts',
   camera: 'Cameras',

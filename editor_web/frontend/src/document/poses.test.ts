@@ -16,6 +16,7 @@ import {
   scaled,
   seenFrom,
   subtract,
+  angleAt,
   threePointFrame,
   turnOf,
   vectorFrom,
@@ -176,4 +177,9 @@ it('reads poses and vectors only where all their numbers are there', () => {
   expect(vectorFrom([1, 2, 3])).toEqual([1, 2, 3])
   expect([vectorFrom([1, 2]), vectorFrom('x'), vectorFrom([1, '${y}', 3])]).toEqual([undefined, undefined, undefined])
   expect(roundedTo([0.12345, -0.00001])).toEqual([0.1235, 0])
+})
+
+it('tells the angle at a corner, whichever of its sides is longer', () => {
+  expect(angleAt([1, 0, 0], [3, 0, 0], [1, 0, 0.5])).toBeCloseTo(Math.PI / 2)
+  expect(angleAt([0, 0, 0], [1, 0, 0], [-2, 0, 0])).toBeCloseTo(Math.PI)
 })

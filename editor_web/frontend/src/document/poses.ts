@@ -110,6 +110,12 @@ function turnOfAxes(x: Vector, y: Vector, z: Vector): Quaternion {
   return normalised([(z[0] + x[2]) / s, (z[1] + y[2]) / s, s / 4, (x[1] - y[0]) / s])
 }
 
+/** The angle at a point between the directions to two others, in radians. */
+export function angleAt(point: Vector, one: Vector, other: Vector): number {
+  const [a, b] = [subtract(one, point), subtract(other, point)]
+  return Math.atan2(Math.hypot(...cross(a, b)), dot(a, b))
+}
+
 /** A pose, or why there is none. */
 export type Made<T> = { readonly value: T; readonly fault?: undefined } | { readonly value?: undefined; readonly fault: string }
 

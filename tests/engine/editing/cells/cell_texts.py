@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.editing.cells.cell_edit import AddCellItem, RemoveCellItem, RenameCellItem, SetCellField
+from engine.editing.cells.cell_edit import AnyCellEdit
 from engine.editing.cells.cell_editing import apply_cell_edits
 
 CELL = """\
@@ -64,14 +64,14 @@ def write_cell(folder: Path, text: str = CELL) -> Path:
     return file
 
 
-def edited(*edits: AddCellItem | RemoveCellItem | RenameCellItem | SetCellField, text: str = CELL) -> str:
+def edited(*edits: AnyCellEdit, text: str = CELL) -> str:
     """The text after edits, which must not be refused."""
     made, refused = apply_cell_edits(text, edits, file="bench.yaml")
     assert refused is None, refused
     return made
 
 
-def refusal(*edits: AddCellItem | RemoveCellItem | RenameCellItem | SetCellField, text: str = CELL) -> tuple[str, str]:
+def refusal(*edits: AnyCellEdit, text: str = CELL) -> tuple[str, str]:
     """Why edits are refused, and the hint; the text stays as it was."""
     made, refused = apply_cell_edits(text, edits, file="bench.yaml")
     assert made == text

@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 
 from engine.document.text.yaml_source import parse_source
 from engine.editing.cells.cell_draft import read_cell_draft
-from engine.editing.cells.cell_edit import AddCellItem, AnyCellEdit, RemoveCellItem, RenameCellItem, SetCellField
+from engine.editing.cells.cell_edit import (
+    AddCellItem,
+    AnyCellEdit,
+    RemoveCellItem,
+    RenameCellField,
+    RenameCellItem,
+    SetCellField,
+)
 from engine.editing.cells.cell_editing import apply_cell_edits
 from tests.engine.editing.cells.cell_texts import CELL, write_cell
 
@@ -78,6 +85,8 @@ def plain(data: dict[str, Any], edit: AnyCellEdit) -> None:
                 del items[edit.name]["at"]
         case SetCellField():
             items[edit.name][edit.field[0]] = edit.value
+        case RenameCellField():
+            raise AssertionError("no device is under edit here")
 
 
 def _with_name(value: Any, old: str, new: str) -> Any:

@@ -9,7 +9,7 @@ import pytest
 
 from engine.editing.targets.target_checks import TargetChecks
 from engine.editing.targets.target_messages import TargetFindings
-from engine.editing.targets.target_process import target_findings
+from engine.editing.targets.target_process import rest_findings, target_findings
 from engine.registry import load_states
 from tests.engine.editing.target_texts import FAR, IN_POST, REACH, written
 
@@ -92,3 +92,27 @@ async def test_a_process_that_does_not_answer_is_reported_and_the_next_text_has_
     finally:
         checks.close()
     assert again == TargetFindings(problem="looked")
+
+
+def test_what_touches_at_rest_is_found_at_both_items_with_their_lines(tmp_path: Path) -> None:
+    text = (
+        "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\nfixtures:\n"
+        "  table: {shape: box, size_m: [1, 1, 0.1], at: {xyz: [0, 0, 0.05]}}\nparts:\n"
+        "  block: {shape: box, size_m: [0.1, 0.1, 0.1], mass_kg: 1, at: {xyz: [0, 0, 0.13]}}\n"
+    )
+    found = rest_findings(text, tmp_path / "cell.yaml").findings
+    assert {(each.path, each.line, each.message) for each in found} == {
+        ("fixtures/table", 5, "`table` and `block` overlap by 20.0 mm while everything is at rest"),
+        ("parts/block", 7, "`table` and `block` overlap by 20.0 mm while everything is at rest"),
+    }
+    assert rest_findings("fixtures: [", tmp_path / "cell.yaml") == TargetFindings()
+
+
+async def test_a_cell_is_looked_at_in_the_process(tmp_path: Path) -> None:
+    checks = TargetChecks(tmp_path)
+    try:
+        text = "flexcell: 1\ncell: bench\n"
+        async with asyncio.timeout(GUARD_S):
+            assert await checks.findings("page", tmp_path / "cell.yaml", text, of="cell") == TargetFindings()
+    finally:
+        checks.close()

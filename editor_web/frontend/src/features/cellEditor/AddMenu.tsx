@@ -1,7 +1,9 @@
 /** Adds an item from a list; it is selected then, for its numbers. */
 import { Button, Menu } from '@mantine/core'
 import { IconPlus } from '@tabler/icons-react'
-import { freeName, itemAddress, newItemsOf, type NewItem, type Surroundings } from '../../document/cellEditing'
+import { itemAddress } from '../../document/cellEditing'
+import type { Surroundings } from '../../document/cellFields'
+import { freeName, newItemsOf, type NewItem } from '../../document/cellNewItems'
 import { edit } from './session'
 import { cellEditor, draftOf, useCellEditor } from './store'
 

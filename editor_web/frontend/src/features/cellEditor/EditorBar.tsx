@@ -12,6 +12,7 @@ import { ConflictNote } from './ConflictNote'
 import { closeCellDocument, jumpTo, openCellDocument, redo, save, undo } from './session'
 import { draftOf, isDirty, setCellEditor, useCellEditor } from './store'
 import { useCellKeys } from './useCellKeys'
+import { useRestFindings } from './useRestFindings'
 
 const SHOWN_STEPS = 100
 
@@ -39,6 +40,7 @@ export function EditorBar({ documents, session, isChanged, onSaved }: EditorBarP
   }
 
   useCellKeys(() => void write())
+  useRestFindings()
 
   return (
     <>

@@ -11,7 +11,7 @@ const ID = 'behaviors/cells/bench.yaml'
 const AT = `/cell_documents/${ID}`
 
 function drafted(made: string): CellDraft {
-  return { text: made, hash: `hash of ${made}`, kind: 'cell', items: [], findings: [], frames: {} }
+  return { text: made, hash: `hash of ${made}`, kind: 'cell', items: [], findings: [], frames: {}, parts: {}, positions: {} }
 }
 
 function text(): string {

@@ -1,5 +1,5 @@
 /** What the editor of the cell holds: the document under edit with its history, and what the server last refused. */
-import type { CellDraft, ConflictBody } from '../../api/types'
+import type { CellDraft, ConflictBody, FindingView } from '../../api/types'
 import { pageStore } from '../../api/pageStore'
 import type { DragSteps } from '../../document/cellPlacing'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
@@ -19,11 +19,13 @@ export interface CellEditorState {
   readonly isBusy: boolean
   readonly notice: { readonly what: string; readonly message: string; readonly hint: string } | undefined
   readonly conflict: ConflictBody | undefined
+  /** What touches in the draft while everything is at rest; of the text before until the new one was looked at. */
+  readonly rest: readonly FindingView[]
   /** The steps of drags in the 3D view. */
   readonly steps: DragSteps
 }
 
-const NOTHING: CellText = { text: '', hash: '', kind: 'cell', items: [], findings: [], frames: {} }
+const NOTHING: CellText = { text: '', hash: '', kind: 'cell', items: [], findings: [], frames: {}, parts: {}, positions: {} }
 
 export function blank(): CellEditorState {
   return {
@@ -35,6 +37,7 @@ export function blank(): CellEditorState {
     isBusy: false,
     notice: undefined,
     conflict: undefined,
+    rest: [],
     steps: 'off',
   }
 }

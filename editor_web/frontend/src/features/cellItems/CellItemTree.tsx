@@ -9,6 +9,7 @@ import {
   IconDatabase,
   IconGridDots,
   IconHandGrab,
+  IconLink,
   IconMap,
   IconPlugConnected,
   IconPuzzle,
@@ -31,6 +32,7 @@ const ICONS: Readonly<Record<NodeKind, Icon>> = {
   tool: IconHandGrab,
   equipment: IconPlugConnected,
   device: IconSettingsAutomation,
+  bond: IconLink,
   module: IconPuzzle,
   fixture: IconTable,
   part: IconBox,
@@ -49,10 +51,12 @@ interface CellItemTreeProps {
   readonly selected: string
   /** The paths of items in which the document under edit has errors. */
   readonly faulty: ReadonlySet<string>
+  /** The paths of items that touch something while everything is at rest. */
+  readonly touching: ReadonlySet<string>
   readonly onSelect: (address: string) => void
 }
 
-export function CellItemTree({ tree, now, selected, faulty, onSelect }: CellItemTreeProps) {
+export function CellItemTree({ tree, now, selected, faulty, touching, onSelect }: CellItemTreeProps) {
   const data = useMemo(() => tree.map(dataOf), [tree])
   // Groups of items are open at first; the many frames of arms are not.
   const controller = useTree({
@@ -91,7 +95,9 @@ export function CellItemTree({ tree, now, selected, faulty, onSelect }: CellItem
         expandOnClick={false}
         levelOffset="md"
         allowRangeSelection={false}
-        renderNode={(payload) => <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} faulty={faulty} />}
+        renderNode={(payload) => (
+          <Line {...payload} cell={nodeAt(tree, payload.node.value)} now={now} faulty={faulty} touching={touching} />
+        )}
       />
     </ScrollArea>
   )
@@ -113,12 +119,18 @@ function Line({
   cell,
   now,
   faulty,
+  touching,
   expanded,
   hasChildren,
   selected,
   elementProps,
   tree,
-}: RenderTreeNodePayload & { readonly cell: CellNode | undefined; readonly now: CellNow; readonly faulty: ReadonlySet<string> }) {
+}: RenderTreeNodePayload & {
+  readonly cell: CellNode | undefined
+  readonly now: CellNow
+  readonly faulty: ReadonlySet<string>
+  readonly touching: ReadonlySet<string>
+}) {
   if (!cell) return null
   const Kind = ICONS[cell.kind] ?? IconCube3dSphere
   const state = stateWords(cell, now)
@@ -153,6 +165,11 @@ function Line({
       {cell.item && faulty.has(cell.item.path) && (
         <Text span size="xs" c="var(--failed)" style={{ whiteSpace: 'nowrap' }}>
           <IconAlertTriangle size={13} aria-hidden /> has an error
+        </Text>
+      )}
+      {cell.item && touching.has(cell.item.path) && (
+        <Text span size="xs" c="var(--stopped)" style={{ whiteSpace: 'nowrap' }}>
+          <IconAlertTriangle size={13} aria-hidden /> touches something
         </Text>
       )}
       {cell.kind === 'group' && (

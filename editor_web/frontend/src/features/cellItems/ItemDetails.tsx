@@ -18,6 +18,7 @@ const KINDS: Readonly<Record<CellNode['kind'], string>> = {
   tool: 'Tool',
   equipment: 'Equipment',
   device: 'Device',
+  bond: 'Bond',
   module: 'Module',
   fixture: 'Fixture',
   part: 'Part',

@@ -1,5 +1,5 @@
 /** A pose: taught in place with the tool, made of three points, or typed; in the world or seen from a frame of the cell. */
-import { NativeSelect, SegmentedControl, Stack, Switch } from '@mantine/core'
+import { NativeSelect, SegmentedControl, Stack, Switch, Text } from '@mantine/core'
 import { IconFocusCentered } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import { Refusal } from '../../components/Refusal'
@@ -9,6 +9,8 @@ import type { PoseRequest } from '../../api/valueWizard'
 import { CommandButton } from '../../components/CommandButton'
 import { fieldsOf, lookup, type Dict } from '../../document/dict'
 import {
+  angleAt,
+  distance,
   FLIPPED,
   frameOf,
   inWorld,
@@ -44,7 +46,7 @@ interface PoseWizardProps {
 
 export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardProps) {
   const [arm, setArm] = useArm(asked.arm)
-  const [method, setMethod] = useState<'place' | 'points'>('place')
+  const [method, setMethod] = useState<'place' | 'points'>(asked.isFrame ? 'points' : 'place')
   const [frame, setFrame] = useState(() => frameOf(asked.value))
   const [pose, setPose] = useState(() => poseOf(asked.value))
   const [cell, setCell] = useState<CellStateFrame>()
@@ -113,7 +115,7 @@ export function PoseWizard({ asked, jog, view, isNarrow, onClose }: PoseWizardPr
       {method === 'place' ? (
         <TakePose arm={arm} obstacle={unplaced} tool={tool} onTake={takeWorld} />
       ) : (
-        <ThreePoints arm={arm} onMade={takeWorld} />
+        <ThreePoints arm={arm} isFrame={asked.isFrame === true} onMade={takeWorld} />
       )}
       <PoseFields pose={pose} onChange={setPose} />
     </WizardFrame>
@@ -141,10 +143,16 @@ function TakePose({ arm, tool, obstacle, onTake }: TakePoseProps) {
   )
 }
 
+interface ThreePointsProps {
+  readonly arm: string
+  readonly isFrame: boolean
+  readonly onMade: (pose: PlacedPose) => void
+}
+
 /** A frame by its origin, a point on x and one on the side of y. */
-function ThreePoints({ arm, onMade }: { readonly arm: string; readonly onMade: (pose: PlacedPose) => void }) {
+function ThreePoints({ arm, isFrame, onMade }: ThreePointsProps) {
   const [points, setPoints] = useState<Dict<Vector>>({})
-  const [isFlipped, setFlipped] = useState(true)
+  const [isFlipped, setFlipped] = useState(!isFrame)
   const [o, x, y] = ['origin', 'onX', 'onY'].map((name) => lookup(points, name))
   const made = o && x && y ? threePointFrame(o, x, y) : undefined
   const set = (name: string) => (point: Vector) => setPoints({ ...points, [name]: point })
@@ -170,6 +178,11 @@ function ThreePoints({ arm, onMade }: { readonly arm: string; readonly onMade: (
         />
       </div>
       <Refusal>{made?.fault}</Refusal>
+      {made?.value && o && x && y && (
+        <Text size="xs" c="dimmed" role="status">
+          {`The points are ${(distance(o, x) * 1000).toFixed(1)} and ${(distance(o, y) * 1000).toFixed(1)} mm from the origin, and ${degrees(angleAt(o, x, y)).toFixed(2)}° apart: 90° at a square corner.`}
+        </Text>
+      )}
     </Stack>
   )
 }
