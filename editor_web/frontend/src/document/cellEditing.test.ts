@@ -65,7 +65,7 @@ it('has the scale and the pieces of a mesh instead of a size, and keeps it a mes
     'Colour',
   ])
   expect(fields[0]).toMatchObject({ choices: ['mesh'] })
-  expect(shownItem('fixtures', mesh, { world: { xyz: [0, 0, 0], xyzw: [0, 0, 0, 1], frame: 'world' } })?.shape).toBeUndefined()
+  expect(shownItem('fixtures', mesh, draft({ frames: { world: pose(2) } }))).toMatchObject({ pose: { xyz: [2, 0, 0] }, shape: undefined })
 })
 
 it('makes the edits of what was changed, and renames last', () => {
