@@ -37,6 +37,10 @@ FOLDERS = {
 # They call what starts npm and other tools.
 FILES = {
     "tests/editor_web/test_frontend.py": "process",
+    # Scenes are written by a process of their own.
+    "tests/engine/cell/test_scene_file.py": "process",
+    # The libraries of the system are looked up by its tools.
+    "tests/engine/doctor/test_host_machine.py": "process",
     # They execute sweeps by their workers.
     "tests/engine/sweep_library/test_search_view.py": "process",
     "tests/engine/sweep_library/test_sweep_reader.py": "process",
