@@ -10,6 +10,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { Dialog } from '../../components/Dialog'
 import { DialogFooter } from '../../components/DialogFooter'
 import { Refusal } from '../../components/Refusal'
+import type { Dict } from '../../document/dict'
 import { firstOfPath } from '../../document/path'
 
 const TOPIC = 'cell/modules'
@@ -36,7 +37,7 @@ export function ModulePlugging({ module }: { readonly module: string }) {
   const lease = leases.find((each) => firstOfPath(each.resource) === module)
   const goal = known.free.includes(chosen) ? chosen : known.free[0]
 
-  function send(service: string, request: Readonly<Record<string, unknown>>): void {
+  function send(service: string, request: Dict<unknown>): void {
     setBusy(true)
     setProblem('')
     bus
