@@ -22,6 +22,8 @@ WRITE_LIMIT_S = 30.0
 """A peer that does not read a response for longer is disconnected."""
 BODY_GRACE_S = 1.0
 _CLOSE_GRACE_S = 1.0
+_LINGER_S = 1.0
+# A socket that is closed on unread data resets the connection, and the peer may lose the answer that it was sent.
 _BAD_HANDSHAKE = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 _INVALID_TEXT = 1007
 _HEAD_TOO_LARGE = 431
@@ -61,6 +63,7 @@ class TimedConnection(H11Protocol):
     _timer: asyncio.TimerHandle | None = None
     _write_timer: asyncio.TimerHandle | None = None
     _timed_state: type[h11.IDLE | h11.SEND_BODY] | None = None
+    _is_refused = False
 
     def __init__(
         self,
@@ -82,6 +85,8 @@ class TimedConnection(H11Protocol):
 
     def data_received(self, data: bytes) -> None:
         """Process received data; each part of a request is timed from its first byte on."""
+        if self._is_refused:
+            return
         super().data_received(data)
         self._follow()
 
@@ -104,7 +109,9 @@ class TimedConnection(H11Protocol):
         )
         for event in answer:
             self.transport.write(self.conn.send(event) or b"")
-        self.transport.close()
+        self._is_refused = True
+        self.transport.write_eof()
+        self.loop.call_later(_LINGER_S, self.transport.close)
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """Hand the transport over to a websocket."""

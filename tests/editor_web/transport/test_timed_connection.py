@@ -58,6 +58,14 @@ class RawPeer:
                 pass  # it was closed on what we had sent
         return b"".join(parts)
 
+    async def whole(self) -> bytes:
+        """Return what comes until the server ends its side; raises ConnectionResetError."""
+        parts: list[bytes] = []
+        async with asyncio.timeout(GUARD_S):
+            while part := await self._loop.sock_recv(self._wire, 65536):
+                parts.append(part)
+        return b"".join(parts)
+
     async def some(self) -> bytes:
         """Return what comes next."""
         async with asyncio.timeout(GUARD_S):
@@ -178,3 +186,20 @@ async def test_what_cannot_be_read_is_refused_in_json_as_all_refusals_are(
         assert b"application/json" in heads.lower()
         assert words in msgspec.json.decode(body, type=ErrorBody).message
         assert (await served.http.get("/api/v1/session")).status_code == 200
+
+
+async def test_who_is_refused_while_he_sends_can_send_it_all_and_reads_the_answer(serve: Serve) -> None:
+    """Closing on what is unread would reset the connection, and the answer with it."""
+    async with serve() as served, RawPeer.connected(served) as peer:
+        await peer.send(head(served, "GET /api/v1/runs?watches=" + "x" * 4_000_000 + " HTTP/1.1"))
+        answer = await peer.whole()
+    assert answer.startswith(b"HTTP/1.1 431 ")
+
+
+async def test_who_goes_on_sending_after_a_refusal_is_disconnected(serve: Serve) -> None:
+    """What he sends is thrown away, for a second."""
+    async with serve() as served, RawPeer.connected(served) as peer:
+        await peer.send("no HTTP\r\n\r\n")
+        with pytest.raises(ConnectionError):
+            while True:
+                await peer.send("x" * 4096)
