@@ -47,6 +47,11 @@ class RawPeer:
         async with asyncio.timeout(GUARD_S):
             await self._loop.sock_sendall(self._wire, text.encode("latin-1"))
 
+    async def send_for_ever(self, text: str) -> None:
+        """Send it again and again; raises ConnectionError when the server does not take it."""
+        while True:
+            await self.send(text)
+
     async def all(self) -> bytes:
         """Return what comes until the server closes, without closing our side before."""
         parts: list[bytes] = []
@@ -201,5 +206,4 @@ async def test_who_goes_on_sending_after_a_refusal_is_disconnected(serve: Serve)
     async with serve() as served, RawPeer.connected(served) as peer:
         await peer.send("no HTTP\r\n\r\n")
         with pytest.raises(ConnectionError):
-            while True:
-                await peer.send("x" * 4096)
+            await peer.send_for_ever("x" * 4096)
