@@ -15,7 +15,7 @@ from engine.document import Decomposition
 from engine.errors import CellError
 from engine.host.user_cache import cache_dir
 from engine.messages import Vector3
-from robots.model.meshes.mesh_solids import read_solids
+from robots.model.meshes.mesh_solids import PLAUSIBLE_M, read_solids
 from robots.model.urdf.mesh_cache import content_key, read_cached, write_cached
 
 Piece = tuple[Vector3, ...]
@@ -28,7 +28,9 @@ _MOST_TRIANGLES = 4_000
 _ANNOUNCED_FROM = 500
 # A third of the search that CoACD does by itself: half the time for about as many pieces.
 _SEARCH = {"mcts_nodes": 10, "mcts_iterations": 60}
-_RECIPE = "convex pieces 1"
+# Of the size of a mesh that is implausibly large: one in the wrong unit would be searched for an hour.
+_COARSE = 0.02
+_RECIPE = "convex pieces 2"
 
 
 def convex_pieces(
@@ -96,9 +98,11 @@ def _pieces_of(solid: Any, *, error_m: float, most: int) -> list[Piece]:
         return [_corners(np.asarray(hull.vertices, np.float64))]
     coacd = _coacd()
     points, faces = _simplified(solid)
+    size_m = float(solid.extents.max())
+    coarsest_m = _COARSE * size_m if size_m > PLAUSIBLE_M[1] else 0.0
     found: list[tuple[Any, Any]] = coacd.run_coacd(
         coacd.Mesh(points, faces),
-        threshold=error_m,
+        threshold=max(error_m, coarsest_m),
         real_metric=True,
         max_convex_hull=most,
         decimate=True,

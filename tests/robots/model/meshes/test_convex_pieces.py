@@ -69,6 +69,24 @@ def test_convex_solids_are_kept_as_they_are(tmp_path: Path) -> None:
         convex_pieces(file, scale=1.0, decomposition=Decomposition(parts=2), cache=tmp_path)
 
 
+def test_a_mesh_in_the_wrong_unit_is_decomposed_coarsely_and_soon(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """300 m instead of 300 mm, of which 5 mm would be searched for an hour."""
+    asked = list[float]()
+    coacd: Any = import_module("coacd")
+
+    def search(*_: Any, threshold: float, **__: Any) -> list[tuple[Any, Any]]:
+        asked.append(threshold)
+        return []
+
+    monkeypatch.setattr(coacd, "run_coacd", search)
+    file = write_mesh(tray(), tmp_path / "tray.stl", scale=1000.0)
+    for scale in (0.001, 1.0):
+        convex_pieces(file, scale=scale, cache=tmp_path)
+    assert asked == pytest.approx([0.005, 6.0])
+
+
 def test_one_piece_is_the_hull(tmp_path: Path) -> None:
     file = write_mesh(tray(), tmp_path / "tray.stl")
     (piece,) = convex_pieces(file, scale=1.0, decomposition=Decomposition(parts=1), cache=tmp_path)
