@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import cast
 
-from engine.document.entries_document import SECTIONS
 from engine.document.text.yaml_source import DocumentSource
 from engine.errors import DocumentError, Position
 
-# In this order: a behavior may name its cell, a sweep the cell and the faults of its runs.
-_KINDS = (
-    ("root", "behavior"),
-    ("outcomes", "behavior"),
-    ("behavior", "sweep"),
-    ("cell", "cell"),
-    ("module", "module"),
-    ("equipment", "equipment"),
-    ("pin_configs", "equipment"),
-    *((key, "entries") for key in SECTIONS.values()),
-    ("faults", "faults"),
-    ("substitutes", "substitutes"),
-)
 _INSTEAD = {
     "behavior": "give a behavior, which has `root:`; a cell is named by `--cell`, or by `cell:` of the behavior",
     "cell": "give the document of a cell; a behavior is run in it: flexcell run BEHAVIOR --cell CELL",
@@ -32,7 +19,27 @@ def kind_of(data: object) -> str | None:
     if not isinstance(data, dict):
         return None
     keys = cast("dict[str, object]", data)
-    return next((kind for key, kind in _KINDS if key in keys), None)
+    return next((kind for key, kind in _kinds() if key in keys), None)
+
+
+@cache
+def _kinds() -> tuple[tuple[str, str], ...]:
+    """Return keys with the kind that they tell; in this order: a behavior may name its cell, a sweep cell and faults."""
+    # Imported here: only a document that is refused needs the kinds of entries.
+    from engine.document.entries_document import SECTIONS
+
+    return (
+        ("root", "behavior"),
+        ("outcomes", "behavior"),
+        ("behavior", "sweep"),
+        ("cell", "cell"),
+        ("module", "module"),
+        ("equipment", "equipment"),
+        ("pin_configs", "equipment"),
+        *((key, "entries") for key in SECTIONS.values()),
+        ("faults", "faults"),
+        ("substitutes", "substitutes"),
+    )
 
 
 def require_kind(source: DocumentSource, kind: str) -> None:

@@ -21,9 +21,6 @@ robots:
   arm: {model: %s}
 """
 HAND = "panda, gripper: {model: softhand, driver: {kind: softhand, device: /dev/ttyUSB0}}"
-MIXED = (
-    "fr3, driver: {kind: franka, host: 127.0.0.3}}\n  other: {model: ur10, driver: {kind: universal_robots, host: x}"
-)
 APART = (
     "fr3, driver: {kind: franka, host: 127.0.0.3}, "
     "gripper: {model: panda_hand, driver: {kind: franka_hand, host: 127.0.0.4}}"
@@ -58,7 +55,6 @@ def test_the_same_documents_run_with_everything_simulated(tmp_path: Path) -> Non
     [
         (HAND, "an emulated hand cannot be at /dev/ttyUSB0"),
         (BOARD, "an emulated board cannot be at /dev/ttyACM0"),
-        (MIXED, "a Franka cannot be in one emulated cell with universal_robots"),
         (APART, "the hand of arm is at 127.0.0.4, its arm is not"),
     ],
 )
