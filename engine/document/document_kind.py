@@ -24,7 +24,7 @@ def kind_of(data: object) -> str | None:
 
 @cache
 def _kinds() -> tuple[tuple[str, str], ...]:
-    """Return keys with the kind that they tell; in this order: a behavior may name its cell, a sweep cell and faults."""
+    """Return keys with the kind that they tell, in this order: a behavior may name its cell, a sweep both."""
     # Imported here: only a document that is refused needs the kinds of entries.
     from engine.document.entries_document import SECTIONS
 
