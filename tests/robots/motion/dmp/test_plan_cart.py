@@ -103,7 +103,9 @@ def test_a_motion_that_is_not_quite_at_rest_at_its_ends_is_brought_to_rest_there
     assert path.xyz[-1] == pytest.approx(dmp.goal[:3])
     assert path.rate[[0, -1]] == pytest.approx(np.zeros((2, 6)), abs=1e-9)
     assert np.abs(slopes - means).max() < 2e-3 * np.abs(path.rate).max()
-    assert np.abs(path.rate[-2]).max() < 0.3 * step * np.abs(path.push[-1]).max()
+    # What pushes in the end may be next to nothing by chance (seed 230).
+    least = 1e-5 * np.abs(path.rate).max()
+    assert np.abs(path.rate[-2]).max() < 0.3 * step * np.abs(path.push[-1]).max() + least
 
 
 offsets = st.tuples(*[st.floats(-0.1, 0.1)] * 3).map(np.array)
