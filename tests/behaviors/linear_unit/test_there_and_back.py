@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 
 import pytest
@@ -28,12 +27,12 @@ class Watch:
         self._load_kg = load_kg
 
     async def look(self, _run: Run, cell: OpenCell) -> None:
-        """Look every tenth of a second."""
+        """Look every tenth of a second of the virtual clock."""
         if self._load_kg:
             await cell.bus.call(SetLoad(mass_kg=self._load_kg, com_m=(0.0, 0.0, 0.0)), to="arm")
         while True:
             self.places.append((await cell.bus.call(ReadLinearUnit(place="south"), to="rail")).place_m)
-            await asyncio.sleep(0.1)
+            await cell.bus.clock.sleep(0.1)
 
 
 def with_fault(name: str, watch: Watch) -> Application:
